@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
+import tempfile
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 import numpy as np
@@ -168,15 +171,31 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     if count == 1:
         yield None
         return
-    deaf = (signal.SIGINT, signal.SIG_IGN)  # the parent alone answers Ctrl-C
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=signal.signal, initargs=deaf)
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin, initargs=(tempfile.tempdir,))
     try:
         with _deaf():
             for _ in range(count):
                 pool.submit(int)
         yield pool
+    except KeyboardInterrupt:
+        for worker in active_children():  # what they have finished is kept
+            worker.kill()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _begin(folder: str | None) -> None:
+    """A worker: its parent alone answers Ctrl-C, keeps its temporary files, and ends it by ending."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tempfile.tempdir = folder
+    threading.Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
+
+
+def _end_with(parent: BaseProcess | None) -> None:
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def play_all(todo: Sequence[Job], pool: ProcessPoolExecutor | None) -> dict[int, list[dict[str, float]]]:
