@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 
 import pytest
 from gearheat.model import files
@@ -140,7 +141,7 @@ def test_temporary_folders_of_killed_processes_are_collected(tmp_path, monkeypat
         aged(tmp_path / name)
     (tmp_path / f"gearheat-{dead.pid}-new").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(ending, "_listen", lambda: None)
+    monkeypatch.setattr(ending, "_listening", nullcontext)
     with ending.ending_well():
         own = tempfile.gettempdir()
         assert own != str(tmp_path) and os.stat(own).st_mode & 0o77 == 0

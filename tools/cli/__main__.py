@@ -17,9 +17,6 @@ def main() -> None:
                 from .app import program
 
                 program()
-            except KeyboardInterrupt:
-                print("interrupted", file=sys.stderr)
-                raise
             finally:
                 sys.stdout.flush()
     except KeyboardInterrupt:

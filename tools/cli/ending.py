@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -32,14 +32,18 @@ def ending_well() -> Iterator[None]:
 
     What others have left for more than a day is removed.
     """
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        _listen()
+    listening = _listening() if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN else nullcontext()
     usual, own = tempfile.tempdir, None
     with suppress(OSError):  # a full or missing folder is told where it matters
         _collect(Path(tempfile.gettempdir()))
         tempfile.tempdir = own = tempfile.mkdtemp(prefix=f"gearheat-{os.getpid()}-")
     try:
-        yield
+        with listening:
+            yield
+    except KeyboardInterrupt:
+        if _HEARD.is_set():
+            os.write(2, b"interrupted\n")
+        raise
     finally:
         tempfile.tempdir = usual
         if own is not None:
@@ -50,15 +54,23 @@ def ending_well() -> Iterator[None]:
             _exit()
 
 
-def _listen() -> None:
+@contextmanager
+def _listening() -> Iterator[None]:
     """Answer Ctrl-C with an exception, and end where a library keeps it: by an alarm, or by a thread."""
     heard, tells = os.pipe()
     os.set_blocking(tells, False)
     signal.set_wakeup_fd(tells, warn_on_full_buffer=False)
-    signal.signal(signal.SIGINT, _interrupt)
+    usual = signal.signal(signal.SIGINT, _interrupt)
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, lambda *_: _leave())
     threading.Thread(target=_wait, args=(heard,), daemon=True).start()
+    try:
+        yield
+    finally:
+        if not _HEARD.is_set():
+            signal.signal(signal.SIGINT, usual)
+            signal.set_wakeup_fd(-1)
+            os.close(tells)
 
 
 def _interrupt(*_: object) -> None:
@@ -69,10 +81,11 @@ def _interrupt(*_: object) -> None:
 
 
 def _wait(heard: int) -> None:
-    while signal.SIGINT not in os.read(heard, 64):
+    while (signals := os.read(heard, 64)) and signal.SIGINT not in signals:
         pass
-    time.sleep(PATIENCE)
-    _leave()
+    if signals:
+        time.sleep(PATIENCE)
+        _leave()
 
 
 def _leave() -> None:
