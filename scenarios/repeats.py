@@ -37,7 +37,14 @@ _RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*")
 
 
 def options(text: str) -> list[str]:
-    """What the first braces of a text stand for: "a,b" is two words, "1..3" three numbers; none without braces."""
+    """What the first braces of a text stand for: "a,b" is two words, "1..3" three numbers; none without braces.
+
+    Args:
+        text: with or without braces
+
+    Raises:
+        ScenarioError: they stand for too many
+    """
     match = _BRACES.search(text)
     if match is None:
         return []
@@ -49,7 +56,14 @@ def options(text: str) -> list[str]:
 
 
 def spell_out(text: str) -> list[str]:
-    """All that a text stands for, with any number of braces: "a_{1,2}" is "a_1" and "a_2"."""
+    """All that a text stands for, with any number of braces: "a_{1,2}" is "a_1" and "a_2".
+
+    Args:
+        text: with or without braces
+
+    Raises:
+        ScenarioError: they stand for too many
+    """
     if not (found := options(text)):
         return [text]
     if math.prod(len(options(braces[0])) for braces in _BRACES.finditer(text)) > MOST:

@@ -46,7 +46,7 @@ FILES = {
 @pytest.mark.parametrize("kind", FILES)
 def test_a_file_that_would_never_end(gearheat, tmp_path, kind):
     text, words = FILES[kind]
-    assert kind == "x" or text != WHOLE
+    assert text != WHOLE
     (tmp_path / "rig.toml").write_text(text)
     began = time.process_time()
     answer = gearheat("steady", tmp_path / "rig.toml")
