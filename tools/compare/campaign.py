@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import tempfile
@@ -10,12 +9,12 @@ import threading
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context, parent_process
-from multiprocessing.process import BaseProcess
+from multiprocessing import active_children, get_context
 from typing import Any
 
 import numpy as np
 
+from ...fmu.apart import begin_worker
 from ...fmu.batch_library import cores
 from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
@@ -171,7 +170,9 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     if count == 1:
         yield None
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin, initargs=(tempfile.tempdir,))
+    pool = ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=begin_worker, initargs=(tempfile.tempdir,)
+    )
     try:
         with _deaf():
             for _ in range(count):
@@ -183,19 +184,6 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _begin(folder: str | None) -> None:
-    """A worker: its parent alone answers Ctrl-C, keeps its temporary files, and ends it by ending."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    tempfile.tempdir = folder
-    threading.Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
-
-
-def _end_with(parent: BaseProcess | None) -> None:
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def play_all(todo: Sequence[Job], pool: ProcessPoolExecutor | None) -> dict[int, list[dict[str, float]]]:
