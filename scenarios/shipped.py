@@ -59,10 +59,27 @@ class Listed:
     checked: str
 
 
+def read_entries(path: Path) -> dict[str, Any]:
+    """The tables of a catalogue file by entry; one with `sizes` is a series of entries that share the rest.
+
+    Its `columns` name what a size has, with its unit; "1" stands for none.
+    """
+    found: dict[str, Any] = {}
+    for name, table in read_toml(path).items():
+        if not isinstance(table, Mapping) or "sizes" not in table:
+            found[name] = table
+            continue
+        shared = {key: value for key, value in table.items() if key not in ("columns", "sizes")}
+        for own, numbers in table["sizes"].items():
+            columns = zip(table["columns"].items(), numbers, strict=True)
+            found[own] = {key: n if unit == "1" else f"{n:g} {unit}" for (key, unit), n in columns} | shared
+    return found
+
+
 def list_entries(kind: str) -> dict[str, Listed]:
     """The entries of a catalogue by name; its kind is a key of `FILES`."""
     found = {}
-    for name, table in read_toml(FOLDER / FILES[kind]).items():
+    for name, table in read_entries(FOLDER / FILES[kind]).items():
         values, checked = [key for key in table if key not in (*ABOUT, CHECKED)], table[CHECKED]
         missing = [] if isinstance(checked, str) else [key for key in values if not checked or key not in checked]
         told = "all" if not missing else f"not {', '.join(missing)}" if checked else "none"

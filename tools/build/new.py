@@ -23,7 +23,8 @@ from ..show.console import writable, write
 from ..solve.settings import flat_of
 from ..solve.steady import conditions
 from . import sizing
-from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
+from .bearings import LIFE, LIGHT
+from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, WormStage
 
 #: Density of steel [kg/m3].
@@ -131,7 +132,7 @@ def _notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
-            if life < sizing.LIFE:
+            if life < LIFE:
                 yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
 
 
@@ -231,6 +232,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "bearing": bearing,
             "life": _num(life),
             "dips": sizing.stands_in_oil(made, bearing),
+            "use": f"{s.kind}_bearing",
         }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
@@ -242,6 +244,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "gears": gears,
         "span": s.span,
         "bearings": places,
+        "kind": s.kind,
         "d": s.d,
         "d_torsion": s.d_torsion,
     }

@@ -1,0 +1,88 @@
+"""Bearings of a unit: the smallest of the catalogue with a bore and the wanted life."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from ...model.units import si_of
+from ...scenarios.entries import catalogue
+
+#: Wanted life of bearings [h].
+LIFE = 20_000.0
+#: Least load of a bearing [N].
+LIGHT = 100.0
+#: Names of the bearings to choose from, by how they begin.
+SERIES = {"ball": ("SKF 62", "SKF 63"), "tapered": ("SKF 302", "SKF 320"), "cylindrical": ("NU ",)}
+#: What the bearings of a unit roll on, and the kinds of shafts with and without tooth forces: the first that lasts.
+CHOICES = {"auto": ("ball", "tapered"), "ball": ("ball",), "roller": ("tapered",)}
+UNLOADED = {"auto": ("ball", "cylindrical"), "ball": ("ball",), "roller": ("cylindrical",)}
+#: Axial load factor of a tapered bearing that another one's is set against [1].
+Y_OTHER = 1.4
+
+
+@dataclass(frozen=True)
+class Size:
+    """A bearing to choose: bore, outside diameter, load rating, and axial factor of a tapered one."""
+
+    name: str
+    d: float
+    D: float
+    C: float
+    Y: float
+
+    def life(self, F_r: float, F_a: float, n: float) -> float:
+        """Rated life [h] under a radial and an axial load [N] at a speed [1/s], as ISO 281 has it."""
+        axial, exponent = (1.6 * F_a, 3.0) if self.Y == 0 else (self.Y * max(F_a, F_r / (2 * self.Y)), 10 / 3)
+        P = max(F_r, (0.56 if self.Y == 0 else 0.4) * F_r + axial, LIGHT)
+        return 1e6 / (3600 * n) * (self.C / P) ** exponent
+
+
+@cache
+def sizes(kind: str) -> tuple[Size, ...]:
+    """The bearings of a kind, a key of `SERIES`, smallest first."""
+    found = []
+    for name, entry in catalogue("bearing").items():
+        v = {key: si_of(entry.values[key]) for key in ("d", "D", "C") if key in entry.values}
+        if name.startswith(SERIES[kind]) and "C" in v:
+            found.append(Size(name, v["d"], v["D"], v["C"], float(entry.values.get("Y", 0.0))))
+    return tuple(sorted(found, key=lambda size: (size.D, size.d)))
+
+
+def largest_bore(bearings: str) -> float:
+    """Of all bearings of a choice, a key of `CHOICES` [m]."""
+    return max(size.d for kind in CHOICES[bearings] for size in sizes(kind))
+
+
+def choose(
+    d: float, radial: Sequence[float], axial: float, n: float, kinds: Sequence[str]
+) -> tuple[str, list[tuple[Size, float]]]:
+    """Kind and bearings a and b of a shaft, each with its life [h]: the first kind that lasts, else the longest life.
+
+    Balls and cylindrical rollers: a locates. Tapered ones are set against each other; the torque has either direction.
+
+    Args:
+        d: bore at least [m]
+        radial: loads of a and b [N]
+        axial: force along the shaft [N]
+        n: speed of the shaft [1/s]
+        kinds: to choose from, keys of `SERIES`
+    """
+    found = []
+    for kind in kinds:
+        fitting = [size for size in sizes(kind) if size.d >= 0.999 * d]
+        if kind == "tapered":
+            loads = [(F, axial + other / (2 * Y_OTHER)) for F, other in zip(radial, reversed(radial), strict=True)]
+        else:
+            loads = list(zip(radial, (axial, 0.0), strict=True))
+        if fitting:
+            found.append((kind, [_choose_one(fitting, F_r, F_a, n) for F_r, F_a in loads]))
+    lasting = [pair for pair in found if all(life >= LIFE for _, life in pair[1])]
+    return lasting[0] if lasting else max(found, key=lambda pair: min(life for _, life in pair[1]))
+
+
+def _choose_one(fitting: Sequence[Size], F_r: float, F_a: float, n: float) -> tuple[Size, float]:
+    """The smallest bearing with the wanted life, else the one with the longest."""
+    lives = [(size, size.life(F_r, F_a, n)) for size in fitting]
+    return next((pair for pair in lives if pair[1] >= LIFE), max(lives, key=lambda pair: pair[1]))
