@@ -40,16 +40,20 @@ class Source:
 
 
 #: What may stand between two arguments of a law in the name of a range: "F_a / C_0".
-_BETWEEN: Mapping[str, Callable[[Any, Any], Any]] = {"-": operator.sub, "/": operator.truediv}
+_BETWEEN: Mapping[str, Callable[[Any, Any], Any]] = {
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
 
 
 @dataclass(frozen=True, eq=False)
 class LawInfo:
     """What a law declares: source key, place in the source, validity in words and as ranges (SI).
 
-    A range belongs to an argument, "nu", or to the difference or quotient of two, "T - T_pour", "F_a / C_0". Where one
-    is left, `regimes` says what reigns there; "{name}" in it stands for the value of that output of the part. `formula`
-    is that of the law's docstring, in LaTeX, "" where it has none.
+    A range belongs to an argument, "nu", or to the difference, product or quotient of two, "T - T_pour", "w * d_m",
+    "F_a / C_0". Where one is left, `regimes` says what reigns there; "{name}" in it stands for the value of that output
+    of the part. `formula` is that of the law's docstring, in LaTeX, "" where it has none.
     """
 
     name: str
@@ -99,8 +103,8 @@ def law(
         source: key of sources.toml
         where: equation, table or section of the source
         valid: range of validity in words
-        ranges: argument, or two of them as "a - b" or "a / b" -> (low, high) in SI, checked by every run that uses
-            the law; a range of an argument that a call leaves out does not count
+        ranges: argument, or two of them as "a - b", "a * b" or "a / b" -> (low, high) in SI, checked by every run that
+            uses the law; a range of an argument that a call leaves out does not count
         verified: False for a law without a golden row from print; reports list it as unverified
         regimes: argument with a range -> what reigns where it is left, in words; see `LawInfo`
     """

@@ -103,6 +103,7 @@ EXAMPLES: dict[str, dict] = {
     "OilPump": dict(V_disp=1e-5, eta_v=0.9, eta_m=0.8),
     "OilFilter": dict(dp_ref=1e5, m_flow_ref=0.1, nu_ref=1e-4, p_bypass=3e5),
     "OilNozzle": dict(d=2e-3, C_d=0.7),
+    "GearJet": dict(d=2e-3, C_d=0.7, r=0.08, height=6.75e-3, A=0.02, along=0.9, c_p=2000.0),
     "OilExchanger": dict(G=300.0, c_p=2000.0),
     "HeatCapacity": dict(C=3600.0),
     "ThermalConductor": dict(G=60.0),

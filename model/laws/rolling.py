@@ -16,8 +16,18 @@ import casadi as ca
 from ..sources import law
 from .smooth import F_WIDTH, Num, smooth_abs, smooth_cap, smooth_magnitude, smooth_max, smooth_min, smooth_power, to_rpm
 
+#: Speed times mean diameter [m/s] at which makers' limiting speeds of ball bearings end: n d_m = 1e6 mm/min. The source
+#: of the friction moments states no end of its own.
+FASTEST = 1e6 * 1e-3 * math.pi / 30
 
-@law(source="SKF2018", where="friction, inlet shear heating reduction factor")
+
+@law(
+    source="SKF2018",
+    where="friction, inlet shear heating reduction factor",
+    valid="n d_m up to 1e6 mm/min",
+    ranges={"w * d_m": (-FASTEST, FASTEST)},
+    regimes={"w * d_m": "faster than makers let ball bearings turn: their friction there is extrapolated"},
+)
 def shear_heating(w: Num, nu: Num, d_m: Num) -> Num:
     r"""Reduction of the rolling torque by heating of the oil in the inlet [1].
 

@@ -26,6 +26,20 @@ def lip_seal_torque(d_sh: Num, c_sh: Num = LIP_SEAL) -> Num:
     return c_sh * d_sh**2
 
 
+@law(source="Incropera2007", where="fins, infinite length", verified=False)
+def lip_conductance(d_sh: Num, h: Num, k: Num) -> Num:
+    r"""Conductance from the line on which a lip rubs into the shaft and from it to the oil on one side [W/K].
+
+    .. math:: G = \frac{\pi}{2} d_{sh} \sqrt{h k d_{sh}}
+
+    Args:
+        d_sh: diameter of the shaft under the lip [m]
+        h: heat transfer coefficient between shaft and oil [W/(m2.K)]
+        k: conductivity of the shaft [W/(m.K)]
+    """
+    return math.pi / 2 * d_sh * ca.sqrt(h * k * d_sh)
+
+
 @law(
     source="Linke1996",
     where="seal losses",

@@ -8,6 +8,8 @@ from typing import ClassVar
 from ..core.component import Equation, Related, equation
 from ..core.declare import Output, Parameter
 from ..laws.churning import churning_torque
+from ..laws.convection import R_AIR, SEA_LEVEL
+from ..laws.dry_sump import mist_factor
 from ..laws.gear_churning import gear_churning_torque, immersion, windage_torque
 from ..laws.oil_in_motion import aerated_density, thrown_flow
 from ..laws.smooth import Num
@@ -72,11 +74,27 @@ class GearChurning(GearInFluid):
 
 
 class GearWindage(GearInFluid):
-    """Windage of a gear that runs in air, free of the oil: of note at high pitch line speeds."""
+    """Windage of a gear that runs in air, free of the oil: of note at high pitch line speeds.
+
+    A mist of oil makes the air heavier; it is as warm as the inner body.
+    """
+
+    lubricant = Lubricant()
+
+    share_oil = Parameter(
+        "1", "share of oil in the air about it", nominal=1e-3, optional=True, at_least=0.0, at_most=0.1
+    )
+
+    def has(self, name: str) -> bool:
+        """The oil is that of a mist."""
+        return name != "lubricant" or "share_oil" in self.told
 
     def torque(self) -> Num:
         """Windage torque of one gear [N.m]."""
-        return windage_torque(self.shaft.w, self.r, self.b, self.m_n)
+        windage = windage_torque(self.shaft.w, self.r, self.b, self.m_n)
+        if "share_oil" not in self.told:
+            return windage
+        return windage * mist_factor(self.lubricant.rho, SEA_LEVEL / (R_AIR * self.inner.T), self.share_oil)
 
 
 class MeshSqueezing(GearInFluid):

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
-from ..core.declare import Output, Parameter
+from ..core.declare import Choice, Output, Parameter
 from ..laws.convection import R_AIR, SEA_LEVEL, air_properties
 from ..laws.gap_seal import gap_torque
 from ..laws.journal import film_torque, petrov_torque, solid_share
-from ..laws.sealing import lip_seal_torque, oil_seal_torque
+from ..laws.sealing import lip_conductance, lip_seal_torque, oil_seal_torque
 from ..laws.smooth import Num, friction_sign, smooth_magnitude
 from .ports import BearingLoad, Flange, HeatPort, Lubricant
 
@@ -58,18 +58,38 @@ class LipSeal(Friction):
 
 
 class OilLipSeal(Friction):
-    """Radial lip seal whose torque falls as its oil warms, and is higher in thicker oil."""
+    """Radial lip seal whose torque falls as its oil warms, and is higher in thicker oil.
+
+    Its source takes the oil of the housing. With `warms = "lip"` it rubs at the temperature of its lip, which its own
+    friction raises above that oil: the shaft carries the heat off as a fin does, from the other side of the seal none.
+    """
 
     role: ClassVar[str] = "seal"
 
     lubricant = Lubricant()
 
+    warms = Choice(("oil", "lip"), "whose temperature says how it rubs", default="oil")
+    h = Parameter("W/(m2.K)", "heat transfer coefficient between shaft and oil", nominal=500.0, above=0.0)
+    k = Parameter("W/(m.K)", "conductivity of the shaft", nominal=45.0, above=0.0)
     d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+    T_lip = Output("K", "temperature at which it rubs", nominal=350.0)
     nu_40 = Parameter("m2/s", "kinematic viscosity of the oil at 40 degC", nominal=1e-4, above=1e-6)
 
     def torque(self) -> Num:
         """Friction torque of one seal [N.m]."""
-        return oil_seal_torque(self.lubricant.T, self.nu_40, self.d_sh)
+        return oil_seal_torque(self.T_lip, self.nu_40, self.d_sh)
+
+    def has(self, name: str) -> bool:
+        """What the shaft carries off counts where the lip is warmer than the oil."""
+        return self.choices["warms"] == "lip" or name not in ("h", "k")
+
+    def equations(self) -> Iterator[Equation]:
+        """The temperature of the lip, then what every friction does."""
+        rise = 0.0
+        if self.warms == "lip":
+            rise = self.P_loss / self.count / lip_conductance(self.d_sh, self.h, self.k)
+        yield equation("temperature of the lip", self.T_lip, self.lubricant.T + rise)
+        yield from super().equations()
 
 
 class LabyrinthSeal(Friction):

@@ -12,6 +12,7 @@ from typing import ClassVar
 
 from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
+from ..laws.dry_sump import fling_off, jet_torque
 from ..laws.oil_circuit import (
     M_WIDTH,
     carried_enthalpy,
@@ -20,7 +21,7 @@ from ..laws.oil_circuit import (
     pump_loss_torque,
     stream_conductance,
 )
-from ..laws.smooth import Num, friction_sign, smooth_sign
+from ..laws.smooth import Num, friction_sign, smooth_positive, smooth_sign
 from .lubrication import OilBath
 from .ports import Flange, HeatPort, Lubricant, OilPort, Opening
 
@@ -86,6 +87,11 @@ class OilLine(Component):
     def heating(self) -> Num:
         """What the oil takes up on its way [W]."""
         return 0.0
+
+    def entering(self, c_p: Num) -> Num:
+        """Temperature of the oil as it enters, from either side [K]."""
+        a, b = self.a, self.b
+        return T_ZERO + (a.h + b.h + smooth_sign(self.m_flow, M_WIDTH) * (a.h - b.h)) / (2 * c_p)
 
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b, with what it took up."""
@@ -170,6 +176,44 @@ class OilNozzle(OilLine):
         return equation("jet", self.m_flow, orifice_flow(self.a.p - self.b.p, self.lubricant.rho, self.d, self.C_d))
 
 
+class GearJet(OilNozzle):
+    """A nozzle whose jet plays on the teeth of a gear: it cools them, and the shaft brings its oil to speed.
+
+    The jet leaves the line as through an orifice and falls off the gear into the sump: connect `b` with its inlet. Oil
+    that returns from the sump does neither.
+    """
+
+    shaft = Flange(must_meet=True)
+    wall = HeatPort()
+
+    r = Parameter("m", "pitch radius of the gear", nominal=0.1, above=0.0)
+    height = Parameter("m", "height of its teeth, over which a film is flung off", nominal=5e-3, above=0.0)
+    A = Parameter("m2", "area of the flanks on which the jet plays", nominal=0.02, at_least=0.0)
+    along = Parameter(
+        "1", "cosine of the angle between jet and pitch line; 1: along a positive rotation", at_least=-1.0
+    )
+    c_p = Parameter("J/(kg.K)", "specific heat of the oil, that of its sump", nominal=2000.0, above=0.0)
+    P = Output("W", "power from the shaft into the oil; negative: the jet drives the gear", nominal=100.0)
+    Q_flow = Output("W", "heat flow rate from the oil to the gear", nominal=1000.0)
+
+    def heating(self) -> Num:
+        """What shaft and teeth give."""
+        return self.P - self.Q_flow
+
+    def equations(self) -> Iterator[Equation]:
+        """Momentum and heat, then what every nozzle does."""
+        oil, w, m_flow = self.lubricant, self.shaft.w, smooth_positive(self.m_flow, M_WIDTH)
+        v_jet = m_flow / (oil.rho * self.C_d * math.pi / 4 * self.d**2)
+        Pr = oil.nu * oil.rho * self.c_p / oil.k
+        G = self.A * fling_off(w, oil.rho, self.c_p, oil.k, Pr, self.height, self.r)
+        dT = self.entering(self.c_p) - self.wall.T
+        yield equation("momentum", self.shaft.tau, jet_torque(m_flow, w * self.r - self.along * v_jet, self.r))
+        yield equation("power", self.P, self.shaft.tau * w)
+        yield equation("heat to the gear", self.Q_flow, stream_conductance(m_flow, self.c_p, G) * dT)
+        yield equation("enters the gear", self.wall.Q_flow, -self.Q_flow)
+        yield from super().equations()
+
+
 class OilExchanger(OilLine):
     """Oil along a wall of one temperature: the water or air of a cooler, a heater, a gear or bearing under a jet.
 
@@ -200,8 +244,7 @@ class OilExchanger(OilLine):
     def equations(self) -> Iterator[Equation]:
         """The oil comes to the wall as it enters, from either side."""
         share = self.opening.share if self.thermostat else 1.0
-        h_in = (self.a.h + self.b.h + smooth_sign(self.m_flow, M_WIDTH) * (self.a.h - self.b.h)) / 2
-        dT = T_ZERO + h_in / self.c_p - self.wall.T
+        dT = self.entering(self.c_p) - self.wall.T
         yield equation("heat to the wall", self.Q_flow, stream_conductance(share * self.m_flow, self.c_p, self.G) * dT)
         yield equation("temperature at b", self.T_b, T_ZERO + self.b.h / self.c_p)
         yield equation("enters the wall", self.wall.Q_flow, -self.Q_flow)

@@ -82,8 +82,11 @@ NOMINAL = {
     **{"m_flow": 0.2, "h_a": 1e5, "h_b": 6e4, "c_p": 2000.0, "dp": 2e5, "C_d": 0.6, "p_bypass": 3e5, "eta_m": 0.8},
     **{"T_shaft": 350.0, "T_housing": 330.0, "T_set": 293.0},
     **{"alpha_s": 12e-6, "alpha_h": 23e-6, "alpha": 0.25, "span": -0.2},
-    **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0},
-    **{"expansion": 6.5e-4, "share_air": 0.1},
+    **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0, "S_own": 500.0, "F_pushed": 800.0},
+    **{"g": 0.002, "path": 0.0095, "rho_C": 0.012, "eps_gamma": 2.9, "v_1": 3.0, "v_2": 2.0, "B_M": 13e3},
+    **{"stage": 12.0, "X_W": 1.0, "tau_test": 530.0, "eps_max": 0.9, "X_S": 1.0, "eta_B": 0.02},
+    **{"alpha_B": 12e-9},
+    **{"expansion": 6.5e-4, "share_air": 0.1, "v_gain": 35.0, "share_oil": 1e-3, "rho_air": 1.2},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -126,6 +129,8 @@ OWN = {
     "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
     "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.windage_torque": {"r": 0.08, "b": 0.024},
+    "dry_sump.fling_off": {"Pr": 260.0, "r": 0.08, "height": 7e-3},
+    "sealing.lip_conductance": {"h": 500.0, "k": 45.0},
     "oil_in_motion.thrown_flow": {"h": 0.04, "r": 0.08, "b": 0.024},
     "oil_in_motion.held_volume": {"Q": 1e-3, "width": 0.3},
     "oil_circuit.stream_conductance": {"G": 300.0},
@@ -164,7 +169,7 @@ NOT_NEGATIVE |= {"fill", "backlash"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
 MAGNITUDES += ("gear_churning.", "load_variables.", "journal.", "gap_seal.", "squeezing.", "preload.preload")
-MAGNITUDES += ("oil_convection.", "cycloid.", "iso14179_1.", "iso14179_2.")
+MAGNITUDES += ("tooth_flanks.", "oil_convection.", "cycloid.", "iso14179_1.", "iso14179_2.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:

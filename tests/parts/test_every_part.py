@@ -36,6 +36,7 @@ CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
 STANDING = {"level": 0.05, "A_oil": 0.1, "width": 0.5, "height": 0.2, "share_air": 0.05}
 CASES += [("OilBath", {"in_motion": True, **STANDING}), ("GearChurning", {"gap": 4e-3})]
+CASES += [("GearWindage", {"share_oil": 1e-3}), ("OilLipSeal", {"warms": "lip", "h": 500.0, "k": 45.0})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 CASES += [
     ("DeepGrooveBallBearing", {"idle": "minimum load", "k_r": 0.025}),

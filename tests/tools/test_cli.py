@@ -23,6 +23,7 @@ COMMANDS = (
     "list",
     "map",
     "rating",
+    "teeth",
     "new",
     "parts",
     "schema",

@@ -47,7 +47,7 @@ def test_every_law_stands_once_among_the_equations() -> None:
 def test_the_limits_tell_ranges_evidence_and_the_readings_there_are() -> None:
     page = reference.fill_blocks((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
     assert "| [friction_schlenk](" in page
-    assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 2 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
+    assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 3 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
     with (RIGS / "planetary" / "measured.csv").open(encoding="utf-8") as file:
         readings = list(csv.DictReader(file))
     told = re.findall(r"`(\w+)` (\S+) to (\S+) ", " ".join(page.split()))

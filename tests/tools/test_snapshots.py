@@ -48,6 +48,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
                                  "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO,MINR"),
     "simulate": ("simulate", "helical_two_stage", "--duty", "duty.csv", "-o", "out.csv"),
     "rating": ("rating", "helical_two_stage", "--limit", "oil.T=80 degC", "--grid", "2x2"),
+    "teeth": ("teeth", "helical_two_stage"),
     "map": ("map", "helical_two_stage", "-o", "map.csv", *RANGES),
     "sweep": ("sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--grid", "3", "-o", "out.csv",
                       "--output", "oil.T,efficiency.eta,stage_1.P_loss"),

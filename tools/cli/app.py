@@ -39,7 +39,7 @@ def options(
 #: The commands by what they are for, in the order in which the help shows them.
 PANELS = {
     "Your gearbox": (rigs.new, rigs.list_, rigs.show, rigs.parts, rigs.schema),
-    "What it does": (solve.steady, solve.simulate, solve.design, solve.sweep, solve.map_, solve.rating),
+    "What it does": (solve.steady, solve.simulate, solve.design, solve.sweep, solve.map_, solve.rating, solve.teeth),
     "FMU": (fmu.export, fmu.play),
     "Measured data": (
         measured.run,

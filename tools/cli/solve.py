@@ -146,6 +146,28 @@ def rating(
     console.answer(found, json, lambda: _print_rating(powers))
 
 
+def teeth(
+    rig: str,
+    load_factor: float = 1.0,
+    scuffing_stage: int = 12,
+    micropitting_stage: int = 10,
+    set_: list[str] | None = None,
+    plot: Path | None = None,
+    json: str | None = None,
+) -> None:
+    """What the teeth feel: temperatures, films, safeties against scuffing and micropitting."""
+    console.plottable(plot)
+    felt = gh.teeth(
+        rig,
+        set_ or [],
+        load_factor=load_factor,
+        scuffing_stage=scuffing_stage,
+        micropitting_stage=micropitting_stage,
+    )
+    found = _write_picture(felt.as_dict(), plot, felt)
+    console.answer(found, json, lambda: _print_teeth(felt))
+
+
 def _write_picture(found: dict[str, Any], plot: Path | None, result: Display, *, say: bool = True) -> dict[str, Any]:
     """The object with the place of its picture, which is written."""
     if plot is None:
@@ -228,6 +250,15 @@ def _print_map(points: gh.Map, found: Mapping[str, Any]) -> None:
     if found["without_result"]:
         console.say(f"{found['without_result']} points have no steady state; their cells are nan")
     print(", ".join(filter(None, (found["out"], found["plot"]))))
+
+
+def _print_teeth(felt: gh.TeethFelt) -> None:
+    for name, (head, rows) in felt.tables().items():
+        console.table(f"{felt.title}, {name}", head, rows)
+    console.say("flash, integral, micropitting: ISO/TS 6336-20, -21, -22 by their own friction and tooth temperature")
+    for assumption in felt.found["assumptions"]:
+        console.say(f"assumed: {assumption}")
+    print_unchecked(felt.found["unchecked"])
 
 
 def _print_rating(powers: gh.Rating) -> None:

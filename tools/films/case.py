@@ -44,6 +44,8 @@ WARM = (313.15, 373.15)
 
 #: Load [N] and mean speed [m/s] at the operating point below which there is none but what blurs its sign.
 LEAST = (1.0, 1e-3)
+#: Load of a line contact per length below which nothing but the drag of seals and bearings loads it [N/m].
+LEAST_LINE = 1e3
 
 #: Dynamic viscosity [Pa.s] and pressure-viscosity coefficient [1/Pa] at a temperature [K].
 Oil = Callable[[float], tuple[float, float]]
@@ -239,7 +241,8 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     result = steady(flat, conditions(scenario, flat))
     c = chosen.film_contact(values_of(chosen, flat, result))
     u_m = abs(c.u_1 + c.u_2) / 2
-    if min(c.F / LEAST[0], u_m / LEAST[1]) < 1:
+    least = max(LEAST[0], LEAST_LINE * c.length if c.R_y == inf else 0.0)
+    if min(c.F / least, u_m / LEAST[1]) < 1:
         raise ScenarioError(
             f"{scenario.name}: {chosen.name} carries {c.F:g} N at {u_m:g} m/s at the operating point: a contact "
             "without load or speed has no film. Give the rig an operating point with both."
@@ -250,7 +253,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     values["slide_roll"] = abs(c.u_1 - c.u_2) / u_m
     values |= {} if c.mu_boundary is None else {"mu_boundary": c.mu_boundary}
     lubricants = [p for p in assembly.parts if isinstance(p, LubricantProperties)]
-    oil = oil_of(_lubricant(assembly.connections, chosen.name, lubricants).values)
+    oil = oil_of(lubricant_of(assembly.connections, chosen.name, lubricants).values)
     return _case((scenario.name, chosen.name), values, {}, oil, ranges, {})
 
 
@@ -270,7 +273,13 @@ def _choose_part(scenario: Scenario, part: str | None, told: tuple[str, ...]) ->
     return part or told[0]
 
 
-def _lubricant(nets: Sequence[Sequence[str]], part: str, lubricants: Sequence[Component]) -> Component:
-    """The lubricant that a part is connected to."""
+def lubricant_of(nets: Sequence[Sequence[str]], part: str, lubricants: Sequence[Component]) -> Component:
+    """The lubricant that a part is connected to, the first one where none is.
+
+    Args:
+        nets: groups of ports that meet
+        part: name of the part
+        lubricants: oils and greases
+    """
     near = [net for net in nets if f"{part}.lubricant" in net]
     return next((p for p in lubricants for net in near if f"{p.name}.lubricant" in net), lubricants[0])

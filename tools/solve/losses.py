@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...model.core.component import Component
 from ...model.core.flat import FlatModel
 from ...model.errors import DataError, ScenarioError
 from ...model.machines.spec import assemble
@@ -191,7 +192,7 @@ def contacts_part(scenario: Scenario) -> tuple[TellsContacts, dict[str, float]]:
     return parts[0], values_of(parts[0], flat, steady(flat, conditions(scenario, flat)))
 
 
-def values_of(part: TellsContacts | TellsFilmContact, flat: FlatModel, result: Result) -> dict[str, float]:
+def values_of(part: TellsContacts | TellsFilmContact | Component, flat: FlatModel, result: Result) -> dict[str, float]:
     """Parameters and outputs of a part at a steady state, by key, in SI.
 
     Args:
