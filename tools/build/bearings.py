@@ -14,12 +14,12 @@ LIFE = 20_000.0
 #: Least load of a bearing [N].
 LIGHT = 100.0
 #: Names of the bearings to choose from, by how they begin.
-SERIES = {"ball": ("SKF 62", "SKF 63"), "tapered": ("SKF 302", "SKF 320"), "cylindrical": ("NU ",)}
+SERIES = {"ball": ("SKF 62", "SKF 63"), "tapered": ("SKF 302", "SKF 313", "SKF 320"), "cylindrical": ("NU ",)}
 #: What the bearings of a unit roll on, and the kinds of shafts with and without tooth forces: the first that lasts.
 CHOICES = {"auto": ("ball", "tapered"), "ball": ("ball",), "roller": ("tapered",)}
 UNLOADED = {"auto": ("ball", "cylindrical"), "ball": ("ball",), "roller": ("cylindrical",)}
-#: Axial load factor of a tapered bearing that another one's is set against [1].
-Y_OTHER = 1.4
+#: Bore over the diameter of the shaft, above which bearings of another kind are taken if theirs is less [1].
+THICK = 2.5
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,21 @@ class Size:
     C: float
     Y: float
 
-    def life(self, F_r: float, F_a: float, n: float) -> float:
-        """Rated life [h] under a radial and an axial load [N] at a speed [1/s], as ISO 281 has it."""
-        axial, exponent = (1.6 * F_a, 3.0) if self.Y == 0 else (self.Y * max(F_a, F_r / (2 * self.Y)), 10 / 3)
-        P = max(F_r, (0.56 if self.Y == 0 else 0.4) * F_r + axial, LIGHT)
-        return 1e6 / (3600 * n) * (self.C / P) ** exponent
+    def life(self, F_r: float, pushed: float, other: float, n: float) -> float:
+        """Rated life [h] at a speed [1/s], as ISO 281 has it.
+
+        Args:
+            F_r: radial load [N]
+            pushed: force of the shaft towards the bearing [N]
+            other: radial load of a like bearing set against it [N]
+            n: speed [1/s]
+        """
+        if self.Y == 0:
+            P, exponent = max(F_r, 0.56 * F_r + 1.6 * pushed), 3.0
+        else:  # with no less than its own thrust
+            F_a = max(F_r / (2 * self.Y), pushed + other / (2 * self.Y))
+            P, exponent = max(F_r, 0.4 * F_r + self.Y * F_a), 10 / 3
+        return 1e6 / (3600 * n) * (self.C / max(P, LIGHT)) ** exponent
 
 
 @cache
@@ -58,7 +68,7 @@ def largest_bore(bearings: str) -> float:
 def choose(
     d: float, radial: Sequence[float], axial: float, n: float, kinds: Sequence[str]
 ) -> tuple[str, list[tuple[Size, float]]]:
-    """Kind and bearings a and b of a shaft, each with its life [h]: the first kind that lasts, else the longest life.
+    """Kind and bearings a and b of a shaft, each with its life [h]: the first kind that lasts, not too large a bore.
 
     Balls and cylindrical rollers: a locates. Tapered ones are set against each other; the torque has either direction.
 
@@ -69,20 +79,19 @@ def choose(
         n: speed of the shaft [1/s]
         kinds: to choose from, keys of `SERIES`
     """
+    a, b = radial
     found = []
     for kind in kinds:
         fitting = [size for size in sizes(kind) if size.d >= 0.999 * d]
-        if kind == "tapered":
-            loads = [(F, axial + other / (2 * Y_OTHER)) for F, other in zip(radial, reversed(radial), strict=True)]
-        else:
-            loads = list(zip(radial, (axial, 0.0), strict=True))
+        loads = [(a, axial, b), (b, axial if kind == "tapered" else 0.0, a)]
         if fitting:
-            found.append((kind, [_choose_one(fitting, F_r, F_a, n) for F_r, F_a in loads]))
+            found.append((kind, [_choose_one(fitting, load, n) for load in loads]))
     lasting = [pair for pair in found if all(life >= LIFE for _, life in pair[1])]
-    return lasting[0] if lasting else max(found, key=lambda pair: min(life for _, life in pair[1]))
+    slim = [pair for pair in lasting if all(size.d <= THICK * d for size, _ in pair[1])]
+    return (slim or lasting or [max(found, key=lambda pair: min(life for _, life in pair[1]))])[0]
 
 
-def _choose_one(fitting: Sequence[Size], F_r: float, F_a: float, n: float) -> tuple[Size, float]:
+def _choose_one(fitting: Sequence[Size], load: tuple[float, float, float], n: float) -> tuple[Size, float]:
     """The smallest bearing with the wanted life, else the one with the longest."""
-    lives = [(size, size.life(F_r, F_a, n)) for size in fitting]
+    lives = [(size, size.life(*load, n)) for size in fitting]
     return next((pair for pair in lives if pair[1] >= LIFE), max(lives, key=lambda pair: pair[1]))

@@ -33,6 +33,11 @@ STEEL = 7850.0
 IRON = 7200.0
 #: Density of oil at which churning is stated [kg/m3].
 OIL = 835.0
+#: Diameter of a fan over the smaller side of the housing, air along the walls over the speed of its tips, and its power
+#: over rho n3 D5.
+SWEEP, AIR, FAN = 0.8, 0.12, 3.0
+#: How much warmer the oil is than the water or air of its cooler [K].
+COOLED = 50.0
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 #: Kind of stage -> the size by which one is known.
@@ -66,6 +71,9 @@ def new(
     power: str,
     speed: str,
     oil: str = "ISO VG 220 mineral",
+    bearings: str = "auto",
+    fan: bool = False,
+    cooler: bool = False,
     out: str | Path | None = None,
 ) -> NewRig:
     """A rig of your own from a name plate: it runs at once, and says the rule of every number.
@@ -77,6 +85,9 @@ def new(
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"
         oil: entry of the catalogue
+        bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
+        fan: on the input shaft
+        cooler: of the oil, for the losses at the name plate
         out: file to write; none is left if None
 
     Raises:
@@ -90,7 +101,7 @@ def new(
     """
     words = stages.split(",") if isinstance(stages, str) else stages
     kinds = [kind.strip() for kind in words if kind.strip()]
-    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"))
+    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"), bearings)
     entry = _oil(oil)
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
@@ -100,7 +111,7 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry))
+        write(path, text(made, doc, speed, entry, fan, cooler))
         try:
             scenario = read_rig(path)
             flat = flat_of(scenario)
@@ -127,7 +138,7 @@ def new(
 def _notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
     """What a user should know about a unit."""
     if sizes["oil_degC"] > HOT:
-        yield f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing."
+        yield f"the oil is hotter than {HOT:g} degC: such a unit needs --fan or --cooler, fins, or a larger housing."
     if sizes["efficiency"] < POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     for shaft in made.shafts:
@@ -146,7 +157,7 @@ def _oil(name: str) -> str:
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
 
-def text(made: Unit, doc: str, speed: str, oil: str) -> str:
+def text(made: Unit, doc: str, speed: str, oil: str, fan: bool, cooler: bool) -> str:
     """The rig file of a unit.
 
     Args:
@@ -154,6 +165,8 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         doc: what it is
         speed: of the input, as it is written
         oil: entry of the catalogue
+        fan: whether one is on the input shaft
+        cooler: whether the oil has one
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
@@ -175,7 +188,10 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "own_load": 0.0 if made.shafts[0].places else LIGHT,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
-        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
+        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
+        "fan": _fan(made) if fan else None,
+        "cooled": COOLED,
+        "cooler": _cooler(made, efficiency) if cooler else None,
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
@@ -248,6 +264,17 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "d": s.d,
         "d_torsion": s.d_torsion,
     }
+
+
+def _fan(made: Unit) -> dict[str, float]:
+    """A fan as wide as a cowl on the smaller side of the housing holds: air along the walls, and its torque."""
+    D = SWEEP * min(made.width, made.height)
+    return {"D": D, "k_v": AIR * D / 2, "k": FAN * 1.2 * D**5 / (2 * math.pi) ** 3, "share": AIR}
+
+
+def _cooler(made: Unit, efficiency: float) -> float:
+    """Conductance of a cooler that takes all that is lost at the name plate [W/K]."""
+    return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
 
 
 def _bodies(made: Unit) -> dict[str, float]:

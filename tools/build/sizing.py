@@ -46,13 +46,14 @@ ALONG = 0.5
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft: torque, speed [1/s], diameter of its larger seat and that by torsion, places of its gears and bearing b,
-    both bearings, all of one kind, with their lives [h].
+    """A shaft: torque, speed [1/s], diameters of its larger and smaller seat and that by torsion, places of its gears
+    and bearing b, both bearings, which are of one kind, with their lives [h].
     """
 
     T: float
     n: float
     d: float
+    d_seal: float
     d_torsion: float
     places: tuple[float, ...]
     span: float
@@ -193,7 +194,7 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
     kinds = (CHOICES if gears else UNLOADED)[bearings]
     kind, ((a, life_a), (b, life_b)) = choose(d, [math.hypot(*F) for F in (near, far)], axial, n, kinds)
     places = tuple(x for _, x, _ in gears)
-    return Shaft(T, n, max(a.d, b.d), d, places, span, (a.name, b.name), (life_a, life_b), kind)
+    return Shaft(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (life_a, life_b), kind)
 
 
 def wheels_dip(made: Unit) -> bool:

@@ -20,12 +20,16 @@ def new(
     power: str,
     speed: str,
     oil: str = "ISO VG 220 mineral",
+    bearings: str = "auto",
+    fan: bool = False,
+    cooler: bool = False,
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     path = out or Path(f"{name}.toml")
-    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, oil=oil, out=path)
+    chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler}
+    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, out=path, **chosen)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
         console.note(note)
