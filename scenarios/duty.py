@@ -58,6 +58,8 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
         except GearheatError as error:
             problems += [f"{path.name} line 1: {problem}" for problem in error.problems]
             continue
+        if quantity.name in values:
+            problems.append(f"{path.name} line 1: {quantity.name} is there twice. Keep one of its columns.")
         values[quantity.name] = column = np.full(len(rows), np.nan)
         for k, (line, cells) in enumerate(rows):
             try:

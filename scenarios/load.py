@@ -17,7 +17,7 @@
     sources = { V = "assumed: one litre" }
 
 Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
-A part's values are those of its type; one of your own is "my_module:MyClass", see `load_type`. A name "x_{a,b}" stands
+A part's values are those of its type; one of your own is "my_module:MyClass", see `use_parts`. A name "x_{a,b}" stands
 for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
@@ -26,9 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import cache
-from importlib import import_module
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
@@ -40,11 +37,11 @@ from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
-from ..model.units import to_si
 from .assemblies import expand_assemblies
-from .csv_table import split_unit
+from .csv_table import scale, split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import find_map, names_map
+from .own_types import load_installed_types, load_type
 from .repeats import expand
 from .scenario import Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
@@ -53,6 +50,7 @@ from .values import (
     PartValues,
     deviation,
     in_range,
+    not_too_wide,
     part_values,
     quantities,
     readable,
@@ -60,8 +58,8 @@ from .values import (
     standard_deviation,
 )
 
-#: Entry points under which installed packages offer part types, "Cooler = my_package.parts:Cooler".
-GROUP = "gearheat.parts"
+#: Time between the halves of a test.
+STOP = Quantity("stop", "s", "time between the halves of a test", low=0.0)
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -120,6 +118,7 @@ class _Loader:
         self.types = self._types()
         self.settable = quantities(self.types, settable)
         self.value_sources: dict[str, str] = {}
+        self.parts: dict[str, PartValues] = {}
 
     def _types(self) -> dict[str, type[Component]]:
         """Part -> its class, for the parts whose type is known."""
@@ -188,7 +187,7 @@ class _Loader:
         )
 
     def _parts(self) -> dict[str, PartValues]:
-        parts: dict[str, PartValues] = {}
+        parts = self.parts
         for name, cls in self.types.items():
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
             try:
@@ -276,6 +275,9 @@ class _Loader:
             if table.reads not in known:
                 self.problems.append(f'{place}: there is no "{table.reads}".{suggestion(table.reads, known)}')
                 continue
+            if unit := table.unit or split_unit(table.column or key)[1]:
+                with self.problems:
+                    scale(unit, known[table.reads].unit, name=f"{place}: {table.reads} in {unit}")
             accuracy: dict[str, float] = {}
             for name, raw in (("repeat_sd", table.repeat_sd), ("offset_sd", table.offset_sd)):
                 if raw is not None:
@@ -295,8 +297,17 @@ class _Loader:
                 )
             )
         for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
+            place = f"{self.file} [losses] {column}"
             if path not in known:
-                self.problems.append(f'{self.file} [losses] {column}: there is no "{path}".{suggestion(path, known)}')
+                self.problems.append(f'{place}: there is no "{path}".{suggestion(path, known)}')
+            elif known[path].unit != "W" and (len(self.table.losses[column]) > 1 or split_unit(column)[1] == "W"):
+                self.problems.append(f"{place}: {path} ({known[path].doc}) is no power. Sum powers only.")
+        self.problems += [
+            f"{self.file} [losses] {column}: {path} is there twice. Name it once."
+            for column, summed in self.table.losses.items()
+            for path in dict.fromkeys(summed)
+            if summed.count(path) > 1
+        ]
         return tuple(found)
 
     def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
@@ -304,8 +315,15 @@ class _Loader:
         found = {}
         for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            found[name] = self._taken(where, "value", table, lambda at, raw, q: deviation(f"{at}{q.name}", raw, q.unit))
+            found[name] = self._taken(where, "value", table, self._change)
         return found
+
+    def _change(self, where: str, raw: Any, quantity: Quantity) -> float:
+        """What a value changes by at one standard deviation."""
+        name = f"{where}{quantity.name}"
+        part, _, key = quantity.name.rpartition(".")
+        value = self.parts[part].values.get(key) if part in self.parts else None
+        return not_too_wide(name, raw, deviation(name, raw, quantity.unit), value)
 
     def _protocol(self) -> Protocol | None:
         table = self.table.campaign
@@ -318,7 +336,7 @@ class _Loader:
         if table.oil not in self.types:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
         with self.problems:
-            stop = to_si(table.stop, "s", name=f"{where}: stop")
+            stop = in_range(f"{where}: ", table.stop, STOP)
             return Protocol(table.inputs, table.room, table.oil, stop, tuple(table.notes))
         return None
 
@@ -331,60 +349,3 @@ class _Loader:
         if not path.is_file():
             self.problems.append(f"{path}: there is no such file. Check the path.")
         return path
-
-
-@cache
-def load_installed_types() -> dict[str, type[Component]]:
-    """Part types of installed packages, by name.
-
-    Raises:
-        ScenarioError: all that cannot be loaded, is no part or has another name than its class
-    """
-    found: dict[str, type[Component]] = {}
-    problems = Problems()
-    for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
-        try:
-            found[entry.name] = load_type(entry.value, {})
-        except ScenarioError as error:
-            problems += [f"package {entry.name}: {problem}" for problem in error.problems]
-    problems += [
-        f'package {n}: its class is "{c.__name__}". Give both one name.' for n, c in found.items() if n != c.__name__
-    ]
-    problems.check()
-    return found
-
-
-def load_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
-    """The class of one's own that "module:Class" names, of an importable module.
-
-    Modules are looked for where Python looks, among what is installed and on PYTHONPATH, never beside the rig file: a
-    rig file of somebody else brings no code of its own.
-
-    Args:
-        kind: as the rig file has it
-        known: the classes of the project, by name
-
-    Raises:
-        ScenarioError: there is no such module or class, it fails, it is no part, or a part type has its name
-    """
-    module_name, _, name = kind.partition(":")
-    if not all(word.isidentifier() for word in module_name.split(".")):
-        raise ScenarioError(f'type "{kind}": names no module. Give module:Class.')
-    try:
-        module = import_module(module_name)
-    except ImportError as error:
-        raise ScenarioError(
-            f'type "{kind}": {error}. Install the package that has it, or put its folder on PYTHONPATH.'
-        ) from None
-    except Exception as error:  # a user's module may fail in any way
-        raise ScenarioError(f'type "{kind}": {module_name} fails: {type(error).__name__}: {error}.') from error
-    cls = getattr(module, name, None)
-    if not (isinstance(cls, type) and issubclass(cls, Component)):
-        parts = [n for n, c in vars(module).items() if isinstance(c, type) and issubclass(c, Component)]
-        close = suggestion(name, parts) or f" Its parts: {', '.join(parts) or 'none'}."
-        raise ScenarioError(f'type "{kind}": {module_name} has no part "{name}".{close}')
-    if known.get(cls.__name__, cls) is not cls:
-        raise ScenarioError(
-            f'type "{kind}": there is a part type "{cls.__name__}" already. Give the class another name.'
-        )
-    return cls

@@ -27,6 +27,8 @@ UNCERTAINTIES = "uncertainties"
 SENSIBLE: Mapping[str, tuple[float, float]] = tables("scenarios", "units.toml")["sensible"]
 #: The same of all other units.
 OTHERS = (1e-30, 1e30)
+#: Largest standard deviation of a value, as a part of it.
+WIDEST = 10.0
 
 
 @dataclass(frozen=True)
@@ -97,13 +99,31 @@ def standard_deviation(name: str, raw: object, unit: str) -> float:
     return value
 
 
-def in_range(where: str, raw: object, quantity: Quantity) -> float:
+def not_too_wide(name: str, raw: object, deviation: float, value: object) -> float:
+    """The deviation of a value, where it can be one.
+
+    Args:
+        name: what to call it in a message
+        raw: as written
+        deviation: in SI
+        value: what deviates, in SI
+
+    Raises:
+        ScenarioError: it is so many times the value that it is a slip
+    """
+    if isinstance(value, int | float) and value and abs(deviation) > WIDEST * abs(value):
+        raise ScenarioError(f"{name} = {raw!r} is {abs(deviation / value):.3g} times the value. Check its unit.")
+    return deviation
+
+
+def in_range(where: str, raw: object, quantity: Quantity, *, sensible: bool = True) -> float:
     """A value as a number in the quantity's SI unit.
 
     Args:
         where: place of the value, for messages
         raw: a number, or text with a unit ("62 mm")
         quantity: what it is a value of: unit and range
+        sensible: whether its size must be that of something in a gearbox
 
     Raises:
         ScenarioError: it is no number with a fitting unit, or out of range
@@ -118,7 +138,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
         known = f"{in_unit(number, theirs, unit):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
-    if value and np.isfinite(quantity.low) and not least <= abs(value) <= most:
+    if sensible and value and np.isfinite(quantity.low) and not least <= abs(value) <= most:
         raise ScenarioError(
             f"{name} = {written} cannot be of a gearbox: expected {least:g} to {most:g} {unit} in size."
             " Check its unit and its exponent."
@@ -248,7 +268,8 @@ class _PartReader:
                 problems.append(f"{name}: the part has no such value.{close}")
                 continue
             with problems:
-                self.result.uncertainties[key] = standard_deviation(name, raw, self.declarations[key].unit)
+                sd = standard_deviation(name, raw, self.declarations[key].unit)
+                self.result.uncertainties[key] = not_too_wide(name, raw, sd, self.result.values[key])
 
     def _unknown(self, key: str) -> str:
         if (name := guess(key, self.meanings)) is None:

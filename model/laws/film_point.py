@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import casadi as ca
 
 from ..sources import law
@@ -100,6 +102,33 @@ def nijenbanning_central(M: Num, L: Num, D: Num) -> Num:
     return ((H_RI**1.5 + H_EI**1.5) ** (2 * s / 3) + stiff**s) ** (1 / s)
 
 
+@law(
+    source="Nijenbanning1994",
+    where="its asymptotes; their blend is this project's own",
+    valid="isothermal, smooth, fully flooded; blend fitted to 40 solved circular contacts, M 5 to 1000, L 2.5 to 20",
+    ranges={"M": (5.0, 1000.0), "L": (2.5, 25.0)},
+    verified=False,
+)
+def solved_central(M: Num, L: Num, D: Num) -> Num:
+    r"""Central film of an elliptical contact as solved ones have it [1], H = h/R_x U^(-1/2), by the sum of speeds.
+
+    .. math:: H = \left\{\left(H_{RI}^8 + \left(H_{EI}^{-4} + H_{00}^{-4}\right)^{-2}\right)^{s/8}
+        + (H_{RP}^{-8} + H_{EP}^{-8})^{-s/8}\right\}^{1/s},\quad s = 1.5 (1 + 1.8 e^{-H_{EI}/H_{RI}})
+
+    It ends in the same asymptotes as `nijenbanning_central`, and is within 7 % (rms 3 %) of the solved contacts, where
+    that is up to 36 % above them at M = 5. From M = 50 on the two are the same within 0.1 %. From M = 5 to about 15 the
+    film rises with load, as solved films do: rigid surfaces alone no longer carry, and elastic ones not yet.
+
+    Args:
+        M: load number, F / (E_eff R_x^2) U^(-3/4) [1]
+        L: lubricant number, alpha_p E_eff U^(1/4) [1]
+        D: R_x / R_y, 1 for a circular contact [1]
+    """
+    H_RI, H_EI, stiff, _ = nijenbanning_asymptotes(M, L, D)
+    s = 1.5 * (1 + 1.8 * ca.exp(-H_EI / H_RI))
+    return ((H_RI**8 + H_EI**8) ** (s / 8) + stiff**s) ** (1 / s)
+
+
 def nijenbanning_asymptotes(M: Num, L: Num, D: Num) -> tuple[Num, Num, Num, Num]:
     """Films [1] of rigid and of elastic surfaces in oil of constant viscosity and of piezoviscous oil, and exponent s.
 
@@ -119,8 +148,18 @@ def nijenbanning_asymptotes(M: Num, L: Num, D: Num) -> tuple[Num, Num, Num, Num]
     return H_RI, (H_EI**-4 + (1.8 / D) ** -4) ** -0.25, (H_RP**-8 + H_EP**-8) ** -0.125, s
 
 
-def point_film_central(eta_0: Num, u_sum: Num, alpha_p: Num, F_n: Num, R_x: Num, R_y: Num, E_eff: Num) -> Num:
-    """Central film of an elliptical contact after Nijenbanning, Venner and Moes [m]; zero at standstill.
+def point_film_central(
+    eta_0: Num,
+    u_sum: Num,
+    alpha_p: Num,
+    F_n: Num,
+    R_x: Num,
+    R_y: Num,
+    E_eff: Num,
+    *,
+    blend: Callable[[Num, Num, Num], Num] = solved_central,
+) -> Num:
+    """Central film of an elliptical contact by asymptotes of Nijenbanning, Venner and Moes [m]; zero at standstill.
 
     Args:
         eta_0: dynamic viscosity at the inlet [Pa.s]
@@ -130,11 +169,12 @@ def point_film_central(eta_0: Num, u_sum: Num, alpha_p: Num, F_n: Num, R_x: Num,
         R_x: reduced radius along the direction of rolling [m]
         R_y: reduced radius across it [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
+        blend: of the asymptotes: as contacts are solved, or `nijenbanning_central` as printed
     """
     speed = smooth_abs(u_sum, U_WIDTH)
     U = eta_0 * speed / (E_eff * R_x)
     M, L = smooth_abs(F_n, POINT_WIDTH) / (E_eff * R_x**2 * U**0.75), alpha_p * E_eff * U**0.25
-    return nijenbanning_central(M, L, R_x / R_y) * R_x * ca.sqrt(U) * (u_sum / speed) ** 2
+    return blend(M, L, R_x / R_y) * R_x * ca.sqrt(U) * (u_sum / speed) ** 2
 
 
 def point_films(eta_0: Num, u_sum: Num, alpha_p: Num, F_n: Num, R_x: Num, R_y: Num, E_eff: Num) -> tuple[Num, Num]:

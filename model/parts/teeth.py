@@ -71,7 +71,7 @@ class ToothedPart(Component):
     Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
     line_load = Choice(("F_bt/b", "F_bn/l"), "line load of the friction formula: per face width, or per contact length")
-    E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
+    E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, at_least=5e8)
     poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
     tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
 

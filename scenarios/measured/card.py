@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,6 +17,10 @@ from ..tables import SensorTable, Strict
 SCHEMAS = ("gearheat.card/1", "gearheat.card/2")
 #: Largest prior standard deviation of a parameter, relative to its value.
 WIDEST = 3.0
+#: Shortest time that a row of a test is held [min].
+SHORTEST = 0.01
+#: Longest time that a row of a test is held, or stands still [min].
+LONGEST = 1e6
 
 
 def _text(value: Any) -> Any:
@@ -47,17 +51,23 @@ class Protocol(Strict):
 
     prose: str = Field(default="", description='"steady" where all readings are steady states; other words are for you')
     dwell_min: list[float] = Field(default=[], description="[min] that the rows of a test are held; the column leads")
-    stop_min: float | None = Field(default=None, ge=0, description="[min] without load between the rows of a test")
-    T_start_minus_amb_K: float = Field(default=0.0, description="[K] start of a test over its room; the column leads")
+    stop_min: float | None = Field(
+        default=None, ge=0, le=LONGEST, description="[min] without load between the rows of a test"
+    )
+    T_start_minus_amb_K: float = Field(
+        default=0.0, ge=-200, le=200, description="[K] start of a test over its room; the column leads"
+    )
     ambient: str = Field(default="linear between the readings", description="of the room; no other is known")
-    ambient_start_minus_reading_K: float = Field(default=0.0, description="[K] room at the start less its 1st reading")
+    ambient_start_minus_reading_K: float = Field(
+        default=0.0, ge=-200, le=200, description="[K] room at the start less its 1st reading"
+    )
     reading: str = Field(default="last sample of the dwell", description="when is read; no other is known")
 
     @field_validator("dwell_min")
     @classmethod
-    def _positive(cls, minutes: list[float]) -> list[float]:
-        if not all(minute > 0 for minute in minutes):
-            raise ValueError("not above 0")
+    def _possible(cls, minutes: list[float]) -> list[float]:
+        if not all(SHORTEST <= minute <= LONGEST for minute in minutes):
+            raise ValueError("no time of a dwell")
         return minutes
 
 
@@ -65,10 +75,12 @@ class Oil(Strict):
     """An oil of the catalogue, or the data of one that it lacks."""
 
     name: str = Field(default="", description="an oil of the catalogue; that of the rig where it is empty")
-    nu40: float | None = Field(default=None, gt=0, description="[mm2/s] viscosity at 40 degC, if it lacks the oil")
-    nu100: float | None = Field(default=None, gt=0, description="[mm2/s] viscosity at 100 degC")
-    rho15: float | None = Field(default=None, gt=0, description="[kg/m3] density at 15 degC")
-    alpha_T: float | None = Field(default=None, description="[kg/(m3.K)] change of the density")
+    nu40: float | None = Field(
+        default=None, gt=0, le=1e5, description="[mm2/s] viscosity at 40 degC, if it lacks the oil"
+    )
+    nu100: float | None = Field(default=None, gt=0, le=1e4, description="[mm2/s] viscosity at 100 degC")
+    rho15: float | None = Field(default=None, ge=300, le=3000, description="[kg/m3] density at 15 degC")
+    alpha_T: float | None = Field(default=None, ge=-5, le=5, description="[kg/(m3.K)] change of the density")
 
 
 class Card(Strict):
@@ -80,7 +92,7 @@ class Card(Strict):
         default="gearheat.card/2", alias="schema", description="version of the format"
     )
     day_cooling_sd: float = Field(
-        default=0.015, ge=0, description="relative scatter from day to day of what surfaces and coolers give off"
+        default=0.015, ge=0, le=1, description="relative scatter from day to day of what surfaces and coolers give off"
     )
     series: bool = Field(default=False, description="whether the tests were logged, too; for the reader")
     columns: dict[str, str] = Field(default={}, description="sensor, path or optional column = column of your table")
@@ -133,11 +145,22 @@ def _raw(path: Path) -> Any:
     try:
         if path.suffix != ".json":
             return read_toml(path)
-        return json.loads(read_text(path, "JSON", DataError))
+        return json.loads(read_text(path, "JSON", DataError), object_pairs_hook=_once)
     except GearheatError as error:
         raise DataError(error.problems) from None
     except ValueError as error:
         raise DataError(f"{path.name}: no JSON ({error}).") from None
+    except RecursionError:
+        raise DataError(f"{path.name}: its tables are too deep. A card has three levels.") from None
+
+
+def _once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """A table of JSON. Raises ValueError where a key is there twice."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError(f'key "{next(n for n in names if names.count(n) > 1)}" is there twice')
+    return table
 
 
 def _known_only(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:

@@ -134,7 +134,7 @@ class _Sensors:
         for key, channel in self.card.channels.items():
             if (name := self._name(key)) is not None:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
-            elif self.card.schema_ == "gearheat.card/2":
+            else:
                 self._refuse(f"channels.{key}", key)
         self._drive()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []

@@ -140,6 +140,7 @@ OWN = {
     "preload.preload_force": {"k": 1e8},
     "film_line.moes_central": {"L": 10.0},
     "film_point.nijenbanning_central": {"L": 10.0, "D": 0.8},
+    "film_point.solved_central": {"L": 10.0, "D": 0.8},
     "film_point.hamrock_dowson_central": {"k": 1.5},
     "film_point.hamrock_dowson_minimum": {"k": 1.5},
     "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},

@@ -175,6 +175,33 @@ FACE = 'b = "42 mm"'
         ),
         ('"measured.csv"', '"measurd.csv"', "measurd.csv: there is no such file. Check the path."),
         ("evidence = ", "evidense = ", 'rig.toml [errata 1]: "evidence" is missing. Expected: how we know.'),
+        # what cannot be
+        (
+            '["carrier_bearing.P_loss"]',
+            '["carrier_bearing.P_loss", "carrier_bearing.P_loss"]',
+            "rig.toml [losses] P_trb_W: carrier_bearing.P_loss is there twice. Name it once.",
+        ),
+        (
+            '["carrier_bearing.P_loss"]',
+            '["carrier_bearing.P_loss", "oil.T"]',
+            "rig.toml [losses] P_trb_W: oil.T (temperature of the oil) is no power. Sum powers only.",
+        ),
+        (
+            'T_oil_C = "oil.T"',
+            'T_oil_C = "carrier_bearing.P_loss"',
+            'rig.toml [sensors] T_oil_C: carrier_bearing.P_loss in degC = "0 degC": unit "degC" does not fit W.',
+        ),
+        (
+            'V = "1 l"',
+            'V = "1 l"\nuncertainties = { V = "100 m3" }',
+            "rig.toml [part.oil]: uncertainty of V = '100 m3' is 1e+05 times the value. Check its unit.",
+        ),
+        (
+            'stop = "5 min"',
+            'stop = "-5 min"',
+            'rig.toml [campaign]: stop = "-5 min" is out of range.',
+        ),
+        ('E = "206 GPa"', 'E = "206 MPa"', GEARS + ': E = "206 MPa" is out of range. It must be at least 500 MPa.'),
         # connections
         (
             "[sensors]",

@@ -10,7 +10,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
-from gearheat.scenarios import load as loading
+from gearheat.scenarios import own_types as loading
 from gearheat.scenarios.load import RIGS, load
 
 WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
@@ -36,6 +36,9 @@ class Room(Strap):
 NUMBER = 3
 '''
 
+#: Modules that do something when they are imported.
+CODE = ("ziglang.__main__", "venv.__main__", "unittest.__main__", "antigravity", "this", "makers", "os", "numpy")
+
 
 @pytest.fixture
 def rig(tmp_path, monkeypatch):
@@ -44,6 +47,8 @@ def rig(tmp_path, monkeypatch):
     (tmp_path / "lib" / "makers_parts.py").write_text(MODULE, encoding="utf-8")
     (tmp_path / "lib" / "makers_slip.py").write_text("1 / 0", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path / "lib"))
+    monkeypatch.setattr(loading, "_NAMED", {"makers_parts", "makers_slip", "makers_exit", "no_such", "beside_the_rig"})
+    (tmp_path / "lib" / "makers_exit.py").write_text("import sys\nsys.exit(0)", encoding="utf-8")
     (tmp_path / "beside_the_rig.py").write_text(MODULE, encoding="utf-8")
 
     def written(kind: str, conductance: str = "3 W/K"):
@@ -76,8 +81,10 @@ def test_a_part_of_ones_own_acts(rig):
         ("makers_parts:", "has no part"),
         ("makers_parts:Room", 'there is a part type "Room" already'),
         ("makers_slip:Strap", "makers_slip fails: ZeroDivisionError"),
+        ("makers_exit:Strap", "makers_exit fails: SystemExit"),
         ("no_such:Strap", "No module named 'no_such'. Install the package"),
         ("beside_the_rig:Strap", "No module named 'beside_the_rig'"),
+        *((f"{module}:X", f"If you trust {module}, add --parts {module}") for module in CODE),
         (":Strap", "Give module:Class"),
         (".x:Strap", "Give module:Class"),
     ],

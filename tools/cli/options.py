@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import tomllib
 from collections.abc import Callable, Mapping
 from importlib.resources import files
-from typing import Annotated, Any, TypeVar, get_type_hints
+from typing import Annotated, Any, TypeVar, cast, get_type_hints
 
+import gearheat as gh
 import typer
 
 C = TypeVar("C", bound=Callable[..., None])
@@ -27,7 +30,23 @@ def describe(name: str, command: C) -> C:
     kinds = get_type_hints(command)
     options = {key: Annotated[kind, _option(texts[key])] for key, kind in kinds.items() if key in texts}
     command.__annotations__ = kinds | options
-    return command
+    return _with_parts(command) if "rig" in kinds else command
+
+
+def _with_parts(command: C) -> C:
+    """A command that takes the modules whose part types its rig may name."""
+
+    @functools.wraps(command)
+    def run(*args: Any, parts: list[str] | None = None, **kwargs: Any) -> None:
+        gh.use_parts(*(parts or ()))
+        command(*args, **kwargs)
+
+    own = inspect.signature(command)
+    kind = Annotated[list[str] | None, _option(TEXTS["every"]["parts"])]
+    more = inspect.Parameter("parts", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
+    vars(run)["__signature__"] = own.replace(parameters=[*own.parameters.values(), more])
+    run.__annotations__ = {**command.__annotations__, "parts": kind}
+    return cast(C, run)
 
 
 def _option(about: str | Mapping[str, Any]) -> Any:

@@ -11,7 +11,9 @@ from ...model.errors import FmuError, Problems, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
+from ...scenarios.values import in_range
 from ..show.console import note
+from ..solve.settings import refuse_given
 from ..solve.simulate import Duty, TimeSeries, duty_file
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
@@ -117,6 +119,7 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         note(f"{fmu}: running native code of {made_by}")
     with Player(about) as player, duty_file(duty) as path:
         schedule = read_duty(path, about.quantities("input"))
+        refuse_given(set, schedule.values, path.name)
         start = _start(about, assignments_of(set, lambda: about.quantities("start")))
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
         start = _at_room(about, first) | start
@@ -147,14 +150,17 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
     """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
     known, shown, wholes = about.quantities("start"), about.quantities("output"), about.wholes()
     values: dict[str, float] = {}
+    ours = (about.description.generationTool or "").startswith("gearheat")
     problems = Problems()
     for text in assignments:
         name, _, written = (part.strip() for part in text.partition("="))
+        if name in values:
+            problems.append(f'"{name}" is set twice. Set it once.')
         with problems:
             if name in wholes:
                 values[name] = _parse_whole(name, written, wholes[name])
             elif name in known:
-                values[name] = to_si(written, known[name].unit, name=name)
+                values[name] = in_range("", written, known[name], sensible=ours)
             else:
                 every = [*known, *wholes]
                 why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)

@@ -177,6 +177,10 @@ def _check(
     problems += [
         f'--dip: there is no gear "{name}". Gears: {", ".join(gears)}.' for name in dips if pairs and name not in gears
     ]
+    for name, pair in pairs.items():
+        for gear, d in zip(("pinion", "wheel"), pair.diameters, strict=True):
+            if (depth := dips.get(f"{name}.{gear}", 0.0)) > (tip := d + 2 * pair.m_n):
+                problems.append(f"--dip: {name}.{gear} of {1e3 * tip:.4g} mm cannot dip {1e3 * depth:.4g} mm.")
     problems.check()
 
 

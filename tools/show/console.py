@@ -34,6 +34,8 @@ FULL = (errno.ENOSPC, errno.EDQUOT)
 NO_WAY = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP, errno.ENOTDIR)
 #: Kinds of pictures, by the ending of the file.
 PICTURES = (".html", ".svg", ".png")
+#: Options of commands that name files to be written.
+OUTPUTS = ("out", "json", "plot", "report", "html", "predictions", "extended")
 #: Width that a column of words gets at least.
 LEAST = 14
 #: s, between two lines of progress where stderr is no terminal: a log stays short, and a long run is seen to live.
@@ -47,6 +49,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
             with keep_inputs():
+                _apart(kwargs)
                 command(*args, **kwargs)
             sys.stdout.flush()
         except GearheatError as error:
@@ -71,6 +74,17 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
             sys.exit(BAD_INPUT)
 
     return run
+
+
+def _apart(options: Mapping[str, Any]) -> None:
+    """Refuse two outputs of a command in one file, of which one would be lost."""
+    named = {name: options.get(name) for name in OUTPUTS}
+    first: dict[str, str] = {}
+    for name, path in named.items():
+        if isinstance(path, str | Path) and str(path) != "-" and not flows(Path(path)):
+            other = first.setdefault(os.path.realpath(path), name)
+            if other != name:
+                raise ScenarioError(f"--{other} and --{name} both name {path}. Give each output a file of its own.")
 
 
 def _silence() -> None:

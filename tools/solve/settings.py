@@ -64,6 +64,21 @@ def adjust(
     return set_up.with_values(_derive_values(set_up.spec, named), SET)
 
 
+def refuse_given(assignments: Settings, given: Iterable[str], duty: str) -> None:
+    """Refuse what is set where a duty gives it over time.
+
+    Args:
+        assignments: values by name, or texts "NAME=VALUE"
+        given: names in the header of the duty
+        duty: its name
+
+    Raises:
+        ScenarioError: one problem for each such name
+    """
+    both = {_name(text) for text in assignments} & set(given)
+    Problems(f"{name} is set, and {duty} gives it over time. Take one of them out." for name in sorted(both)).check()
+
+
 def flat_of(scenario: Scenario) -> FlatModel:
     """The flat model of a scenario."""
     return flatten(assemble(scenario.spec))

@@ -22,7 +22,7 @@ from ...scenarios.scenario import Scenario
 from ..show.columns import titled
 from ..show.display import Columns, optional
 from ..show.picture import Picture
-from .settings import adjust, find_unchecked, flat_of
+from .settings import adjust, find_unchecked, flat_of, refuse_given
 from .steady import outside_of
 
 if TYPE_CHECKING:
@@ -187,7 +187,8 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
         >>> run.plot("oil.T", "wall.T")  # doctest: +SKIP
     """
     with duty_file(duty) as path:
-        scenario = adjust(scenario_of(rig), set, named=duty_names(path))
+        refuse_given(set, named := duty_names(path), path.name)
+        scenario = adjust(scenario_of(rig), set, named=named)
         flat = flat_of(scenario)
         schedule = read_duty(path, flat)
     result = integrate(flat, schedule, start=first_temperatures(scenario, flat, schedule))

@@ -25,7 +25,7 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from . import sampling
 from .sampling import UNCERTAINTY, draw_values, reasons, shares
-from .settings import adjust, find_unchecked, flat_of
+from .settings import adjust, find_unchecked, flat_of, refuse_given
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
 from .sweep_rows import SUFFIXES, TELLING, Column, Job
@@ -145,6 +145,7 @@ def plan_sweep(request: Request) -> Plan:
     with problems:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
     with problems:
+        refuse_given(request.assignments, scheduled, "the duty")
         scenario = adjust(scenario, request.assignments, named=[*names, *scheduled])
     problems.check()
     flat = flat_of(scenario)

@@ -150,6 +150,19 @@ mu = "10 %"
         ("[oil]\nnu40 = 30\nnu100 = 40\n", "thinner"),
         ("[oil]\nnu40 = 30\n", "give both nu40 and nu100"),
         ("x = [", "card.toml line 1: TOML syntax"),
+        *(
+            (f"{table}{key} = {value}\n", f"{key} = {value} does not fit")
+            for table, key, value in (
+                ("", "day_cooling_sd", "1000000.0"),
+                ("[oil]\nnu100 = 5\n", "nu40", "1e+30"),
+                ("[oil]\n", "rho15", "0.88"),
+                ("[protocol]\n", "dwell_min", "[1e-09]"),
+                ("[protocol]\n", "dwell_min", "[240, -90]"),
+                ("[protocol]\n", "stop_min", "-5"),
+                ("[protocol]\n", "stop_min", "1e+30"),
+                ("[protocol]\n", "T_start_minus_amb_K", "293"),
+            )
+        ),
     ],
 )
 def test_values_that_cannot_be(card, text, words):
@@ -158,7 +171,9 @@ def test_values_that_cannot_be(card, text, words):
     assert words in str(error.value)
 
 
-@pytest.mark.parametrize("content", ["[1]", '"text"', "{", "3"])
+@pytest.mark.parametrize(
+    "content", ["[1]", '"text"', "{", "3", '{"oil": {}, "oil": {}}', '{"channels": {"a": {}, "a": {}}}', "[" * 100_000]
+)
 def test_what_is_no_card(card, content):
     with pytest.raises(DataError, match=r"card\.json"):
         read_card(card(content))
@@ -179,3 +194,8 @@ def test_sensors_of_a_card_that_cannot_be(rig, card, text, words):
     with pytest.raises(DataError) as error:
         sensors_of(rig("planetary"), read_card(card(text, "card.toml")))
     assert words in str(error.value)
+
+
+def test_an_unknown_channel_of_version_1(rig, card):
+    with pytest.raises(DataError, match='no sensor "T_oill_C"'):
+        sensors_of(rig("planetary"), read_card(card({**FIRST, "channels": {"T_oill_C": {"repeat_sd": 0.5}}})))

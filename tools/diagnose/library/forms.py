@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -11,7 +11,7 @@ from ....model.laws.smooth import smooth_abs
 from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
 
 #: What changes values of the machine.
 Changes = Callable[[Theta, Row], Values]
@@ -35,7 +35,6 @@ WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the
 ORDER_STEP = 0.02
 PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
 FROM_THEN = {"quantity": "order above", "shape": "threshold"}
-INNER_SHARE = Shape("inner_share", "1", "share of the rest that goes to what turns", 0.0, 1.0, 0.5, 0.3)
 
 
 def since(theta: Theta, row: Row) -> Num:
@@ -67,11 +66,6 @@ COURSES = (
         lambda theta, row: (1 - ca.exp(-row.order / theta["decay"])) / (1 - ca.exp(-1 / theta["decay"])),
     ),
 )
-
-
-def oil_share(mean: float, sd: float) -> Shape:
-    """The share of a loss that heats the oil."""
-    return Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, mean, sd)
 
 
 @dataclass(frozen=True)
@@ -250,37 +244,3 @@ def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Chan
 def linear(size: Num) -> Num:
     """A factor that may fall to nothing."""
     return 1 + size
-
-
-def scaled(
-    at: Context,
-    cause: Cause,
-    quantities: Iterable[str] = (),
-    groups: Mapping[str, Paths] | None = None,
-    law: Callable[[Num], Num] = ca.exp,
-) -> Iterator[Cause]:
-    """A cause that is a factor on what all parts of a kind do, on what one of several does, or on all in a regime.
-
-    Args:
-        at: what it is made for
-        cause: without its forms
-        quantities: of the regimes, as `Context.regimes` takes them, but for speed and load
-        groups: part or place -> paths of its values; what parts declare for the cause if None, and no cause without
-        law: factor of a size
-    """
-    size, found = cause.size.name, at.roles.failing(cause.id) if groups is None else groups
-    changes = {name: factors(paths, size, law) for name, paths in found.items()}
-
-    def every(theta: Theta, row: Row) -> Values:
-        return {path: value for values in changes.values() for path, value in values(theta, row).items()}
-
-    def limited(limit: Regime) -> Form:
-        def values(theta: Theta, row: Row) -> Values:
-            return every({**theta, size: theta[size] * limit.gate(theta, row, at.ranges)}, row)
-
-        return Form(limit.name, shapes=limit.shapes(at.ranges), values=values, regime=limit.told)
-
-    single = [Form(name, values=values) for name, values in changes.items()]
-    if changes:
-        sides = [limited(limit) for limit in at.regimes(quantities)]
-        yield replace(cause, forms=weighed([Form(values=every)], single, sides))

@@ -9,7 +9,8 @@ import casadi as ca
 
 from ....model.laws.smooth import smooth_abs
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Num, Row, Theta, Values
+from .entries import entry
 from .forms import Context
 
 THERMOMETERS = ("oil_temp", "wall_temp", "ambient")
@@ -62,23 +63,15 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     others = [(s, 1.0) for s in at.sensors if s.kind == "ambient"][:1]
     others += [(s, BODY) for s in at.sensors if s.kind == "wall_temp" and s.role == "read"][:1]
     read = [s for s in own if s.role == "read"]
-    speed = at.first("speed")
-    shapes = (Shape("a", "1", "exponent of the speed", -1.0, 1.0, 0.0, 0.2),) if speed else ()
-    forms = []
+    known = entry("sensor.oil_temp.position", at)
+    shapes, forms = known.shapes if at.first("speed") else (), []
     for probe in read:
         for other, more in others:
             name = ", ".join(filter(None, (one_of(probe, read), f"towards {other.name}")))
             weight = (1.0 if len(others) == 1 else 0.6 if more == 1.0 else 0.4) / len(read)
             forms.append(Form(name, weight, shapes, shown=_drawn(at, probe, other, more)))
     if forms:
-        yield Cause(
-            id="sensor.oil_temp.position",
-            doc="The oil probe sees oil between the sump's and a wall's or the room's temperature, or a hot jet.",
-            size=Size("share", "1", "share of the excess over the room that it loses", 0.08, -0.05, 0.35),
-            forms=tuple(forms),
-            exposes="a second probe in the oil; the probe moved",
-            acts_on="rise",
-        )
+        yield known.with_forms(forms)
 
 
 def _drawn(at: Context, probe: Sensor, other: Sensor, more: float) -> Callable[[Theta, Row, Values], Values]:
@@ -104,15 +97,9 @@ def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     def error(theta: Theta, row: Row, value: Num) -> Num:
         return ca.exp(theta["e"] * ca.log(smooth_abs(row.rise / rise, 0.02)))
 
-    shape = Shape("e", "1", "exponent of the rise", 0.6, 1.8, 1.1, 0.25)
-    forms = [replace(wrong(s, "bias", error), name=one_of(s, own), weight=1 / len(own), shapes=(shape,)) for s in own]
-    yield Cause(
-        id="sensor.ambient.heated",
-        doc="The room probe stands in the warm air of the gearbox: it reads the more too high the warmer the gearbox.",
-        size=Size("bias", "K", "reading less truth at the typical rise", 0.05 * rise, -0.025 * rise, 0.5 * rise),
-        forms=tuple(forms),
-        exposes="the room probe moved away; transients",
-        acts_on="rise",
+    known = entry("sensor.ambient.heated", at)
+    yield known.with_forms(
+        replace(wrong(s, "bias", error), name=one_of(s, own), weight=1 / len(own), shapes=known.shapes) for s in own
     )
 
 
@@ -134,15 +121,9 @@ def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
         return shown
 
     if pairs:
-        yield Cause(
+        yield entry("sensor.*.swapped", at).with_forms(
+            (Form(f"{a.name} with {b.name}", 1 / len(pairs), shown=exchanged(a.name, b.name)) for a, b in pairs),
             id=f"sensor.{own[0].kind}.swapped",
-            doc="Two thermometers are exchanged: each shows what the other should.",
-            size=Size("share", "1", "1 where they are exchanged", 0.6, 0.0, 1.0),
-            forms=tuple(
-                Form(f"{a.name} with {b.name}", 1 / len(pairs), shown=exchanged(a.name, b.name)) for a, b in pairs
-            ),
-            exposes="one probe warmed by hand",
-            common=0.2,
         )
 
 
@@ -160,11 +141,5 @@ def lag(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     def late(sensor: Sensor) -> Form:
         return wrong(sensor, "time", lambda theta, row, value: -row.rates.get(sensor.name, 0.0))
 
-    yield Cause(
-        id=f"sensor.{own[0].kind}.lag",
-        doc="The probe follows late: a pocket, a thick well, paste that is missing.",
-        size=Size("time", "s", "time constant of the probe", 300.0, 0.0, 7200.0),
-        forms=tuple(replace(late(s), name=one_of(s, read), weight=1 / len(read)) for s in read),
-        exposes="a logged step of the load",
-        common=0.3,
-    )
+    forms = [replace(late(s), name=one_of(s, read), weight=1 / len(read)) for s in read]
+    yield entry("sensor.*.lag", at).with_forms(forms, id=f"sensor.{own[0].kind}.lag")

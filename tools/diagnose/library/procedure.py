@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 import casadi as ca
 
 from ....model.laws.smooth import smooth_max
-from ....model.machines.roles import Roles
-from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
-from .cooling import DAYS
+from .cause import Cause, Form, Num, Row, Theta, Values
+from .entries import entry
 from .forms import COURSES, Context, factors
 
 #: What early readings are a share of where they are early by a time [s].
@@ -29,11 +28,12 @@ def causes(at: Context) -> Iterator[Cause]:
         at: machine, data and instruments
     """
     if "dwell" in at.ranges.known:
-        yield not_stationary()
+        yield not_stationary(at)
     if "order" in at.ranges.known:
-        yield order(at.roles)
-        if at.roles.cooling:
-            yield day_scatter(at.roles)
+        yield order(at)
+        if daily := at.roles.daily if at.roles.cooling else ():
+            day = Form(spread="test", values=factors(daily, "sd"))
+            yield entry("procedure.day_scatter", at).with_forms([day])
 
 
 def _pace(missing: Num) -> Num:
@@ -41,7 +41,7 @@ def _pace(missing: Num) -> Num:
     return smooth_max(1 - missing, 0.0, ROUND) / smooth_max(1.0, 0.0, ROUND)
 
 
-def not_stationary() -> Cause:
+def not_stationary(at: Context) -> Cause:
     """Readings taken too early: by a share of the dwell, by some minutes, or now more and now less."""
 
     def pace(first: float, later: float, minutes: bool) -> Callable[[Theta, Row], Num]:
@@ -57,24 +57,18 @@ def not_stationary() -> Cause:
             known = ", ".join(filter(None, (words, name)))
             forms.append(Form(known, (1 - AT_RANDOM) * weight / 2, pace=pace(first, later, minutes)))
     forms.append(Form("at random", AT_RANDOM, pace=pace(1.0, 1.0, False), spread="test"))
-    return Cause(
-        id="procedure.not_stationary",
-        doc="Readings taken earlier than the protocol says, while the gearbox still warms.",
-        size=Size("missing", "1", "share of the dwell that is missing; by minutes: of two hours", 0.3, 0.0, 0.95),
-        forms=tuple(forms),
-        exposes="a logged warm-up; a longer dwell",
-        acts_on="order",
-    )
+    return entry("procedure.not_stationary", at).with_forms(forms)
 
 
-def order(roles: Roles) -> Cause:
+def order(at: Context) -> Cause:
     """Something that changes steadily from the first test to the last."""
+    known, roles = entry("procedure.order", at), at.roles
     teeth = roles.scaled(*roles.parts("teeth"))
     shafts = roles.scaled(*roles.parts("bearing"), *roles.parts("seal"))
     targets = {"cooling": (roles.cooling, 0.4), "teeth": (teeth, 0.3), "all losses": ((*teeth, *shafts), 0.3)}
     if not shafts:
         del targets["all losses"]
-    kept = {name: (paths, weight) for name, (paths, weight) in targets.items() if paths}
+    targets = {name: (paths, weight) for name, (paths, weight) in targets.items() if paths}
 
     def changing(paths: Sequence[str], course: Callable[[Theta, Row], Num]) -> Callable[[Theta, Row], Values]:
         def values(theta: Theta, row: Row) -> Values:
@@ -83,37 +77,14 @@ def order(roles: Roles) -> Cause:
 
         return values
 
-    zero = Shape("zero", "1", "where the nominal holds: 0 before the change, 1 after", 0.0, 1.0)
-    total = sum(weight for _, weight in kept.values())
-    return Cause(
-        id="procedure.order",
-        doc="Cooling or losses that change over the campaign: dirt, season, running in, what stands around.",
-        size=Size("change", "1", "logarithm of the factor from the first test to the last", 0.12, -1.5, 1.0),
-        forms=tuple(
-            Form(
-                ", ".join(filter(None, (target, course.words))),
-                weight * course.share / total,
-                (*course.shapes, zero),
-                values=changing(paths, course.at),
-            )
-            for target, (paths, weight) in kept.items()
-            for course in COURSES
-        ),
-        exposes="the first point repeated at the end; tests in random order",
-        acts_on="order",
-    )
-
-
-def day_scatter(roles: Roles) -> Cause:
-    """Days that differ more than stated."""
-    return Cause(
-        id="procedure.day_scatter",
-        doc="Cooling that differs from day to day more than the card states, without a pattern.",
-        size=Size(
-            "sd", "1", "relative standard deviation of the days' cooling beside what the card states", 0.05, 0.0, 0.6
-        ),
-        forms=(Form(spread="test", values=factors(roles.daily, "sd")),),
-        exposes="the same point on several days; draught and neighbours logged",
-        like=DAYS,
-        acts_on="order",
+    total = sum(weight for _, weight in targets.values())
+    return known.with_forms(
+        Form(
+            ", ".join(filter(None, (target, course.words))),
+            weight * course.share / total,
+            (*course.shapes, *known.shapes),
+            values=changing(paths, course.at),
+        )
+        for target, (paths, weight) in targets.items()
+        for course in COURSES
     )

@@ -11,7 +11,8 @@ import numpy as np
 from ....model.machines.roles import Roles
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import step
-from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Small, Theta, Values
+from .cause import Cause, Form, Num, Row, Shape, Theta, Values
+from .entries import entry
 from .extras import Extras
 from .forms import Context, factors, weighed
 
@@ -39,33 +40,22 @@ def causes(at: Context) -> Iterator[Cause]:
         at: machine, data and instruments
     """
     if at.roles.inside or at.roles.outside:
-        yield mass(at.roles)
-    if forms := [*capacity_moved(at.roles), *heat_moved(at.roles), *losses_moved(at)]:
-        yield Cause(
-            id="thermal.split",
-            doc="Capacity, or the heat of losses, belongs to what turns instead of to the housing or the oil.",
-            size=Size("shift", "1", "share of all capacity, or of that heat, moved to what turns", 0.2, -0.6, 0.6),
-            forms=tuple(replace(f, weight=1 / len(forms)) for f in forms),
-            exposes="a probe on the shaft; a logged warm-up",
-        )
+        yield mass(at)
+    known = entry("thermal.split", at)
+    if forms := [*capacity_moved(at.roles), *heat_moved(at.roles), *losses_moved(at, known.shapes)]:
+        yield known.with_forms(replace(f, weight=1 / len(forms)) for f in forms)
 
 
-def mass(roles: Roles) -> Cause:
+def mass(at: Context) -> Cause:
     """Other capacities."""
+    roles = at.roles
     groups = {"": (*roles.inside, *roles.outside), "housing": roles.outside, "what turns": roles.inside}
     groups = {name: parts for name, parts in groups.items() if parts}
     if len(groups) == 2:  # one of the groups is all there is
         groups = {"": groups[""]}
     weights = {"": 0.6 if len(groups) > 1 else 1.0, "housing": 0.25, "what turns": 0.15}
-    return Cause(
-        id="thermal.mass",
-        doc="Other heat capacities: warm-ups last longer or shorter.",
-        size=Size("ln_factor", "1", "logarithm of the factor on the heat capacities", 0.35, -1.5, 1.5),
-        forms=tuple(
-            Form(name, weights[name], values=factors(roles.scaled(*parts), "ln_factor"))
-            for name, parts in groups.items()
-        ),
-        exposes="a logged warm-up",
+    return entry("thermal.mass", at).with_forms(
+        Form(name, weights[name], values=factors(roles.scaled(*parts), "ln_factor")) for name, parts in groups.items()
     )
 
 
@@ -107,8 +97,8 @@ def _shifted(share: float, shift: Num) -> Num:
     return 1 / (1 + ca.exp(-(at + 4 * shift))) - s
 
 
-def losses_moved(at: Context) -> Iterator[Form]:
-    """Heat of all losses from the housing or the oil to what turns, or from the oil to the housing."""
+def losses_moved(at: Context, shapes: tuple[Shape, ...]) -> Iterator[Form]:
+    """Heat of all losses from the housing or the oil to what turns, or from the oil to the housing; shapes of each."""
     roles = at.roles
     inside, outside = bodies(roles)
     if not 1 <= len(roles.ends) <= 2:
@@ -119,21 +109,20 @@ def losses_moved(at: Context) -> Iterator[Form]:
         ("heat of all losses, from the oil to the housing", "extra_move_out", roles.oil_heat, outside[0]),
     ):
         if not roles.nets.meet(a, b):
-            yield _move(at, name, part, a, b)
+            yield _move(at, name, part, (a, b), shapes)
 
 
-def _move(at: Context, name: str, part: str, a: str, b: str) -> Form:
-    """A share of the loss taken from a to b."""
+def _move(at: Context, name: str, part: str, ports: tuple[str, str], shapes: tuple[Shape, ...]) -> Form:
+    """A share of the loss taken from the first port to the second."""
     readings = [at.roles.reading_of(end) for end in at.roles.ends]
-    exponent = Shape("a", "1", "exponent of the speed in that share", -0.8, 0.8, 0.0, 0.25)
-    shapes = (exponent,) if at.first("speed") else ()
     kind = "HeatMove" if len(readings) == 1 else "HeatMoveOfTwo"
-    nets = [(f"{part}.a", a), (f"{part}.b", b)]
+    nets = [(f"{part}.a", ports[0]), (f"{part}.b", ports[1])]
     nets += [(f"{part}.{key}", reading) for key, reading in zip(("first", "second"), readings, strict=False)]
 
     def values(theta: Theta, row: Row) -> Values:
         return {f"{part}.share": theta["shift"] * at.by_speed(row, theta, "a")}
 
+    shapes = shapes if at.first("speed") else ()
     return Form(name, 1.0, shapes, (PartSpec(part, kind, {"share": 0.0}),), tuple(nets), values)
 
 
@@ -146,40 +135,19 @@ def bodies(roles: Roles) -> tuple[str, tuple[str, ...]]:
 
 def external_source(at: Context) -> Cause:
     """Heat that comes from beside the machine, into one body of the housing or by the shaft."""
-    extras = Extras("source", at)
-    inside, outside = bodies(at.roles)
-    shapes = (
-        Mostly("a", "1", "exponent of the speed", 0.0, 2.2),
-        Mostly("c", "1", "exponent of the load: of a motor's heat, the square of its current", 0.0, 2.0),
-        Small("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5),
-        Small("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0),
-    )
+    known, (inside, outside) = entry("heat.external_source", at), bodies(at.roles)
+    extras = Extras(known.part, at)
     made = [extras.heat(inside, port, k, len(outside)) for k, port in enumerate(outside)]
-    alone = [extras.with_parts([part], shapes) for part in made]
-    sides = [extras.with_parts(made[-1:], shapes, x) for x in at.regimes(("w", "tau", "room", "direction", "order"))]
+    alone = [extras.with_parts([part], known.shapes) for part in made]
+    sides = [extras.with_parts(made[-1:], known.shapes, limit) for limit in known.regimes]
     names = [port.partition(".")[0] if len(outside) > 1 else "" for port in outside]
-    return Cause(
-        id="heat.external_source",
-        doc="Heat from a motor, a neighbour or the sun: it warms, and no torque shows it.",
-        size=at.power("heat flow rate", 0.085, -0.3, 1.2),
-        forms=weighed([replace(f, name=n) for f, n in zip(alone, names, strict=True)], sides=sides),
-        exposes="temperatures with the gearbox at rest and its neighbours running",
-        acts_on=at.first("speed"),
-    )
+    return known.with_forms(weighed([replace(f, name=n) for f, n in zip(alone, names, strict=True)], sides=sides))
 
 
 def parked(at: Context) -> Cause:
     """Heat while the machine stands."""
-    extras = Extras("parked", at)
-    inside, outside = bodies(at.roles)
+    known, (inside, outside) = entry("heat.parked", at), bodies(at.roles)
+    extras, w = Extras(known.part, at), STANDS * at.ranges.mid["w"]
     part, nets = extras.heat(inside, outside[-1], 0, 1)
-    w = STANDS * at.ranges.mid["w"]
     part = replace(part, values={**part.values, "a": 0.0, "w_on": w, "w_side": -1.0, "w_width": w / 3})
-    shapes = (Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.5, 0.4),)
-    return Cause(
-        id="heat.parked",
-        doc="Heat while the machine stands: a heater, a pump, a neighbour that runs.",
-        size=at.power("heat flow rate at standstill", 0.085, -0.2, 0.7),
-        forms=(extras.with_parts([(part, nets)], shapes),),
-        exposes="a logged standstill of some hours",
-    )
+    return known.with_forms([extras.with_parts([(part, nets)], known.shapes)])
