@@ -60,9 +60,9 @@ def sizes(kind: str) -> tuple[Size, ...]:
     return tuple(sorted(found, key=lambda size: (size.D, size.d)))
 
 
-def largest_bore(bearings: str) -> float:
-    """Of all bearings of a choice, a key of `CHOICES` [m]."""
-    return max(size.d for kind in CHOICES[bearings] for size in sizes(kind))
+def largest_bore(kinds: Sequence[str]) -> float:
+    """Of all bearings of some kinds, keys of `SERIES` [m]."""
+    return max(size.d for kind in kinds for size in sizes(kind))
 
 
 def choose(

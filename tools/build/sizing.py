@@ -20,6 +20,8 @@ from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage,
 
 #: Shear stress of shafts [Pa].
 SHEAR = 25e6
+#: How much whole numbers of teeth may add to a ratio [1].
+ROUNDED = 1.05
 #: Kinds of stages that stand alone.
 ALONE = ("worm", "planetary")
 #: From the middle of a bearing to a gear [m].
@@ -148,13 +150,14 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         )
     if bearings not in CHOICES:
         raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
-    d, T = largest_bore(bearings), power / speed * max(ratio, 1.0) if speed > 0 else 0.0
-    if (most := math.pi / 16 * SHEAR * (0.999 * d) ** 3) < T:
+    choices = UNLOADED if "planetary" in kinds else CHOICES
+    d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0) if speed > 0 else 0.0
+    if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
         needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
         ways = [f"{most / T * power / 1000:.4g} kW or less", f"{speed * T / most * 30 / math.pi:.4g} rpm or more"]
         if most > power / speed:
             ways.insert(1, f"a ratio of {most / T * ratio:.3g} or less")
-        if bearings == "ball" and d < largest_bore("auto"):
+        if bearings == "ball" and needed <= largest_bore(choices["roller"]) / ROUNDED:
             ways.append("--bearings roller")
         problems.append(
             f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
