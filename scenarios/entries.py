@@ -14,7 +14,7 @@ from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, sources_of
-from .shipped import CHECKED, FILES, FOLDER, read_entries
+from .shipped import CHECKED, FILES, FOLDER, SERIES, read_entries
 
 #: Keys that describe an entry to a reader, and that no part takes, with their SI unit.
 DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {
@@ -87,8 +87,8 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
         if not isinstance(table, Mapping):
             problems.append(f"{where}: is no table. Write the values of the entry below [{name}].")
             continue
-        values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED)}
-        sources, wrong = sources_of(where, {key: value for key, value in table.items() if key != CHECKED})
+        values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED, SERIES)}
+        sources, wrong = sources_of(where, {key: value for key, value in table.items() if key not in (CHECKED, SERIES)})
         problems += wrong
         checked, wrong = _read_checks(where, table.get(CHECKED), values)
         problems += wrong

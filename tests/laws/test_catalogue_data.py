@@ -16,7 +16,7 @@ from gearheat.model.units import to_si
 from gearheat.scenarios.shipped import read_entries
 
 FOLDER = Path(__file__).parents[2] / "scenarios" / "catalogue"
-ABOUT = {"doc", "source", "sources", "checked"}
+ABOUT = {"doc", "source", "sources", "checked", "series"}
 UNITS = {
     **dict.fromkeys(("nu", "nu_40", "nu_100"), "m2/s"),
     **dict.fromkeys(("rho", "rho_15"), "kg/m3"),
