@@ -10,6 +10,7 @@ from xml.sax.saxutils import escape
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from ..model.errors import visible
 from ..model.files import tables as read_tables
 
 #: What must not stand in the value of an attribute as it is, beside the brackets.
@@ -51,7 +52,7 @@ def _templates() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    found.filters |= {"attributes": _attributes, "quoted": _quoted, "text": escape}
+    found.filters |= {"attributes": _attributes, "quoted": _quoted, "text": _text}
     return found
 
 
@@ -61,4 +62,8 @@ def _attributes(values: Mapping[str, Any]) -> str:
 
 
 def _quoted(value: Any) -> str:
-    return f'"{escape(str(value), _IN_ATTRIBUTES)}"'
+    return f'"{escape(visible(str(value)), _IN_ATTRIBUTES)}"'
+
+
+def _text(value: str) -> str:
+    return escape(visible(value))

@@ -56,7 +56,7 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
         fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
         directions: of the standard deviations, where it has some
     """
-    name = flat.name.replace("*/", "* /").replace("\n", " ")
+    name = re.sub(r"[^ -~]|[*/\\?]", "_", flat.name)
     head = f"/* {name}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
@@ -194,14 +194,19 @@ def _beginnings(table: Table) -> dict[str, int]:
     return {"START": place, "ROOM_T": room, **numbers}
 
 
+#: What stands as it is in no text of C.
+_UNSAFE = re.compile(r'[^ -~]|["\\?]')
+
+
 def _array(kind: str, name: str, values: Iterable[str]) -> str:
     rows = list(values) or ["0"]
     return f"static {kind} {name}[] = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
 
 
 def _string(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
-    return f'"{escaped}"'
+    """A text as C has it: printable ASCII; the rest, quotes, backslashes and question marks (trigraphs) in octal."""
+    octets = text.replace("\n", " ").encode(errors="backslashreplace").decode("latin-1")
+    return '"' + _UNSAFE.sub(lambda found: f"\\{ord(found[0]):03o}", octets) + '"'
 
 
 def headers_of_3() -> dict[str, str]:

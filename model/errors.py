@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from types import TracebackType
+
+#: What acts on a screen, or no XML can hold, in a text: controls, marks of direction, odd ends of lines, halves.
+_HIDDEN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ud800-\udfff\ufeff\ufffe\uffff]"
+)
+
+
+def visible(text: str) -> str:
+    """A text with all that cannot be seen in it written as escapes, such as \\x1b; tabs and ends of lines stay.
+
+    Args:
+        text: of a user
+    """
+    return _HIDDEN.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
 class GearheatError(Exception):
     """Base of every error a user can cause. `problems` holds one text per problem, at most three lines each."""
 
     def __init__(self, problems: str | Iterable[str]) -> None:
-        self.problems: tuple[str, ...] = (problems,) if isinstance(problems, str) else tuple(problems)
+        self.problems = tuple(map(visible, (problems,) if isinstance(problems, str) else problems))
         super().__init__("\n".join(self.problems))
 
 

@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..model.errors import DataError, Problems, ScenarioError, suggestion
+from ..model.errors import DataError, Problems, ScenarioError, suggestion, visible
 from ..model.files import tables
 from ..model.units import spell_unit, to_si
 from .document import read_text
@@ -28,6 +28,9 @@ SHOWN = 30
 
 #: A number with a decimal comma, in a table whose columns semicolons separate.
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
+#: A number whose point or comma may separate thousands, and one where it separates decimals.
+_GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
+_DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
@@ -129,15 +132,37 @@ def header_problems(name: str, header: Sequence[str]) -> list[str]:
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     text = read_text(path, "CSV", DataError)
-    written = text.replace("\x00", "\ufffd").splitlines()
+    written = visible(text.replace("\x00", "\ufffd")).splitlines()
     head = next((line for line in written if line.strip() and not line.startswith("#")), "")
     semicolons = head.count(";") > head.count(",")
     reader = csv.reader(written, delimiter=";" if semicolons else ",")
     try:
-        cells = [(reader.line_num, [_cell(cell, semicolons) for cell in row]) for row in reader]
+        rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
+    if semicolons and (problem := _two_readings(path.name, rows)):
+        raise DataError(problem)
+    cells = [(line, [_cell(cell, semicolons) for cell in row]) for line, row in rows]
     return [(line, row) for line, row in cells if any(row)]
+
+
+def _two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str | None:
+    """Where a point or a comma may separate decimals or thousands, with both readings; None where all is clear."""
+    sure: set[str] = set()
+    unsure: dict[str, tuple[int, str]] = {}
+    for line, cell in ((line, cell.strip()) for line, row in rows for cell in row):
+        if match := _GROUP.fullmatch(cell):
+            unsure.setdefault(match[1], (line, cell))
+        elif match := _DECIMAL.fullmatch(cell):
+            sure.add(match[1])
+    for sign, (line, cell) in unsure.items():
+        if sure != {sign}:
+            small, large = cell.replace(sign, "."), cell.replace(sign, "")
+            return (
+                f'{name} line {line}: "{cell}" may be {float(small):g} or {large}. Write thousands without a sign, and'
+                " all decimals with the same one."
+            )
+    return None
 
 
 def _cell(cell: str, semicolons: bool) -> str:

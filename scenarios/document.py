@@ -8,7 +8,7 @@ from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import GearheatError, ScenarioError, suggestion, visible
 from ..model.files import reading
 
 #: Kinds of source beside a citation ("Dias2014, table 5.7"): they need a reason behind the colon.
@@ -43,11 +43,25 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a file. Raises ScenarioError naming the line of a syntax error."""
     text = read_text(path, "TOML", ScenarioError)
     try:
-        return tomllib.loads(text)
+        found: dict[str, Any] = shown(tomllib.loads(text))
+        return found
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(_syntax_problem(path.name, text, str(error))) from None
     except RecursionError:
         raise ScenarioError(f"{path.name}: its lists or tables lie too deep in each other. Write them flat.") from None
+
+
+def shown(value: Any) -> Any:
+    """A value of a file, with what cannot be seen in its texts written as escapes.
+
+    Args:
+        value: text, number, list or table
+    """
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, list):
+        return [shown(item) for item in value]
+    return {visible(key): shown(item) for key, item in value.items()} if isinstance(value, dict) else value
 
 
 def _syntax_problem(name: str, text: str, message: str) -> str:

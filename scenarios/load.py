@@ -33,7 +33,7 @@ from ..model.core.component import Component
 from ..model.core.connect import nets
 from ..model.core.declare import Port, State, list_declared
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
+from ..model.errors import GearheatError, Problems, ScenarioError, suggestion, visible
 from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
@@ -99,8 +99,8 @@ class _Loader:
     def __init__(self, path: Path, raw: Mapping[str, Any], known: Mapping[str, type[Component]]) -> None:
         self.path = path
         self.known = known
-        self.file = path.name
-        self.name = path.resolve().parent.name if path.name == "rig.toml" else path.stem
+        self.file = visible(path.name)
+        self.name = visible(path.resolve().parent.name if path.name == "rig.toml" else path.stem)
         self.table: RigTable
         plain, folded = expand_assemblies(self.file, raw)
         whole, repeated = expand(self.file, plain)

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from ...model.errors import DataError, GearheatError, Problems, suggestion
-from ..document import read_text, read_toml
+from ..document import read_text, read_toml, shown
 from ..tables import SensorTable, Strict
 
 #: Versions of the format that are read.
@@ -145,7 +145,7 @@ def _raw(path: Path) -> Any:
     try:
         if path.suffix != ".json":
             return read_toml(path)
-        return json.loads(read_text(path, "JSON", DataError), object_pairs_hook=_once)
+        return shown(json.loads(read_text(path, "JSON", DataError), object_pairs_hook=_once))
     except GearheatError as error:
         raise DataError(error.problems) from None
     except ValueError as error:

@@ -96,6 +96,28 @@ def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
     assert read(path).columns["T_oil_C"] == (45.25,)
 
 
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (("1;1;1.450;45,5",), '"1.450" may be 1.45 or 1450'),
+        (("1;1;1.450;45",), '"1.450" may be 1.45 or 1450'),
+        (("1;1;1,450;45.5",), '"1,450" may be 1.45 or 1450'),
+        (("1;1;240;45", "2;2;90,5;-1.250"), 'line 3: "-1.250" may be -1.25 or -1250'),
+        (("1;1;1.450;45.5",), ""),
+        (("1;1;1,450;45,5",), ""),
+        (("1;1;0.450;45.125",), ""),
+        (("1;1;1450;45",), ""),
+    ],
+)
+def test_a_point_or_a_comma_with_two_readings(tmp_path: Path, rows: tuple[str, ...], said: str) -> None:
+    path = table(tmp_path, *rows, header=HEADER.replace(",", ";"))
+    if not said:
+        assert read(path).columns["dwell_min"][0] in (1.45, 0.45, 1450.0)
+        return
+    with pytest.raises(DataError, match=said):
+        read(path)
+
+
 def test_unknown_columns_warn(tmp_path: Path) -> None:
     path = table(tmp_path, *(row + ",7,8" for row in ROWS), header=HEADER + ",T_oil2,colour")
     assert tuple(read(path).warnings) == (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
-from ...model.errors import FmuError, Problems, ScenarioError, suggestion
+from ...model.errors import FmuError, Problems, ScenarioError, suggestion, visible
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
@@ -67,6 +67,9 @@ def export(
         >>> import gearheat as gh
         >>> gh.export("planetary", "planetary.fmu", fmi=3)  # doctest: +SKIP
     """
+    told = {"--author": author, "--license": license, "--model-version": model_version}
+    if wrong := [option for option, text in told.items() if not (visible(text) == text and text.isprintable())]:
+        raise ScenarioError([f"{option} has characters that cannot be seen. Take them out." for option in wrong])
     scenario = scenario_of(rig)
     asked = Asked(
         scenario,

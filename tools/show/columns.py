@@ -33,9 +33,14 @@ def rows_text(head: Iterable[str], rows: Iterable[Iterable[float | str | None]])
     return "\n".join([",".join(head), *(",".join(map(cell, row)) for row in rows)]) + "\n"
 
 
+#: What a spreadsheet takes a cell for that begins so: a formula.
+FORMULA = ("=", "+", "-", "@")
+
+
 def table_text(columns: Mapping[str, np.ndarray]) -> str:
     """CSV text of columns of numbers, by their titles."""
     line = ",".join(["%.9g"] * len(columns))
     rows = np.column_stack(list(columns.values())).tolist()
-    titles = (f'"{title}"' if "," in title else title for title in columns)  # an element of an array: x[1,2]
+    safe = (f"'{title}" if title.startswith(FORMULA) else title for title in columns)
+    titles = (f'"{title}"' if "," in title else title for title in safe)  # an element of an array: x[1,2]
     return "\n".join([",".join(titles), *(line % tuple(row) for row in rows)]) + "\n"

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 from ...fmu.compiling import Progress
-from ...model.errors import DataError, GearheatError, ScenarioError
+from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
 
 P = ParamSpec("P")
@@ -94,7 +94,7 @@ def _silence() -> None:
 
 def note(text: str) -> None:
     """A message or progress on stderr; stdout carries results only."""
-    print(text, file=sys.stderr, flush=True)
+    print(visible(text), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -263,7 +263,7 @@ def screen_width() -> int | None:
 
 def say(text: str) -> None:
     """Print sentences, broken between words where the screen ends; whole into files and pipes."""
-    width = screen_width()
+    text, width = visible(text), screen_width()
     if width is None:
         print(text)
         return
@@ -302,7 +302,7 @@ def table(
     widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
     least = [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)]
     kept, *others = fitting(least, whole, screen.width, repeated=words[0])
-    screen.print(title, style="italic")
+    screen.print(visible(title), style="italic")
     for group in (kept, *others):
         drawn = Table(box=box.SIMPLE_HEAD)
         for i in group:
@@ -360,6 +360,6 @@ def cell(value: Any) -> str:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if not isinstance(value, float):
-        return str(value)
+        return visible(str(value))
     value += 0.0  # no zero is negative
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
