@@ -46,7 +46,7 @@ class Size:
         else:  # with no less than its own thrust
             F_a = max(F_r / (2 * self.Y), pushed + other / (2 * self.Y))
             P, exponent = max(F_r, 0.4 * F_r + self.Y * F_a), 10 / 3
-        return 1e6 / (3600 * n) * (self.C / max(P, LIGHT)) ** exponent
+        return 1e6 / (3600 * n) * float((self.C / max(P, LIGHT)) ** exponent)
 
 
 @cache

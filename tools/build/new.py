@@ -33,9 +33,12 @@ STEEL = 7850.0
 IRON = 7200.0
 #: Density of oil at which churning is stated [kg/m3].
 OIL = 835.0
-#: Diameter of a fan over the smaller side of the housing, air along the walls over the speed of its tips, and its power
-#: over rho n3 D5.
-SWEEP, AIR, FAN = 0.8, 0.12, 3.0
+#: Diameter of a fan over the smaller side of the housing [1].
+SWEEP = 0.8
+#: Air along the walls over the speed of the fan's tips [1].
+AIR = 0.12
+#: Power of a fan over rho n3 D5 [1].
+FAN = 3.0
 #: How much warmer the oil is than the water or air of its cooler [K].
 COOLED = 50.0
 #: What the answer holds of a stage.
