@@ -179,6 +179,12 @@ def broken_relations(source: str, p: np.ndarray) -> np.ndarray:
     return broken
 
 
+@cache
+def _pool(workers: int, process: int) -> ThreadPoolExecutor:
+    """Threads that stay: a diagnosis shares out rows thousands of times. A process that was split off has its own."""
+    return ThreadPoolExecutor(workers)
+
+
 def share_rows(block: Callable[[int, int], int], n: int, size: int, threads: int) -> None:
     """Do n rows in blocks on some threads; ctypes lets go of the interpreter while C runs.
 
@@ -198,8 +204,7 @@ def share_rows(block: Callable[[int, int], int], n: int, size: int, threads: int
     if workers == 1:
         done = [block(a, b) for a, b in blocks]
     else:
-        with ThreadPoolExecutor(workers) as pool:
-            done = list(pool.map(lambda ends: block(*ends), blocks))
+        done = list(_pool(workers, os.getpid()).map(lambda ends: block(*ends), blocks))
     if not all(done):
         raise FmuError("there is not enough memory for the rows. Give fewer at a time.")
 

@@ -94,7 +94,14 @@ def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
 
 
 def cache_folder() -> Path:
-    """The user's cache folder of this project."""
+    """The user's cache folder of this project; a temporary one of a user who has no home."""
+    try:
+        return _usual_cache()
+    except RuntimeError:
+        return Path(tempfile.gettempdir()) / "gearheat"
+
+
+def _usual_cache() -> Path:
     if folder := os.environ.get("XDG_CACHE_HOME"):
         return Path(folder) / "gearheat"
     if sys.platform == "win32":
@@ -121,15 +128,25 @@ def binary(source: str, platform: Platform, *, headers: Mapping[str, str] = Mapp
     for part in (source, *headers.values(), windows, *named):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
-    try:
-        return stored.read_bytes()
-    except OSError:
-        pass
+    if (kept := _kept(stored)) is not None:
+        return kept
     files = {"all.c": source, "windows.c": windows, **headers}
     with ThreadPoolExecutor(len(platform.targets)) as pool:
         made = _join(list(pool.map(lambda target: _compile(files, target), platform.targets)))
-    store(stored, made)
+    store(stored, hashlib.sha256(made).digest() + made)
     return made
+
+
+def _kept(path: Path) -> bytes | None:
+    """A binary of the cache; None where there is none, it is not as it was written, or others may write there."""
+    try:
+        content = path.read_bytes()
+        about = path.parent.stat()
+    except OSError:
+        return None
+    mine = not hasattr(os, "getuid") or (about.st_uid == os.getuid() and not about.st_mode & 0o022)
+    digest, made = content[:32], content[32:]
+    return made if mine and hashlib.sha256(made).digest() == digest else None
 
 
 def compile_all(
@@ -160,13 +177,20 @@ def store(path: Path, content: bytes) -> None:
         FmuError: the folder or the file cannot be written
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private(path.parent)
         with replacing(path) as beside:
             beside.write_bytes(content)
     except OSError as error:
         raise FmuError(
             f"{path}: cannot be written ({error.strerror}). Choose a file in a folder you may write to."
         ) from error
+
+
+def make_private(folder: Path) -> None:
+    """Make a folder and those above it that its owner alone may enter."""
+    if not folder.is_dir():
+        make_private(folder.parent)
+        folder.mkdir(mode=0o700, exist_ok=True)
 
 
 def _compile(files: Mapping[str, str], target: str) -> bytes:

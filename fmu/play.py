@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -101,6 +101,7 @@ class Player:
         record: Sequence[str] | None = None,
         output_times: Sequence[float] | np.ndarray | None = None,
         tolerance: float | None = None,
+        alive: Callable[[], object] = int,
     ) -> Played:
         """Run from `begin` to `stop` [s] with communication points every `step` and on every point of the inputs.
 
@@ -115,6 +116,7 @@ class Player:
             output_times: times of the rows, not decreasing; a row at a jump shows the inputs behind it, a time given
                 twice both sides. When not given: every communication step, and both sides of every jump
             tolerance: of the FMU's solver; its own when not given
+            alive: called before each step
 
         Raises:
             FmuError: unknown names, times that make no sense, or a call the FMU refuses, with its own message
@@ -124,7 +126,7 @@ class Player:
         points = grid(inputs, begin, stop, step, output_times)
         self._check_steps(points, step)
         slave = self._initialise(dict(start or {}), points, tolerance)
-        values = self._walk(slave, points, [self._variables[name].valueReference for name in columns])
+        values = self._walk(slave, points, [self._variables[name].valueReference for name in columns], alive)
         return Played(points.row_time, tuple(columns), values)
 
     def _instance(self) -> Slave:
@@ -205,7 +207,7 @@ class Player:
             references = np.array([self._variables[n].valueReference for n in names], dtype=np.uint32)
             slave.put(kind, references, [start[n] for n in names])
 
-    def _walk(self, slave: Slave, points: Grid, recorded: list[int]) -> np.ndarray:
+    def _walk(self, slave: Slave, points: Grid, recorded: list[int], alive: Callable[[], object]) -> np.ndarray:
         """Step from communication point to communication point, and read the rows."""
         do_step, get, set_values, set_slopes = slave.step, slave.get, slave.set, slave.slopes
         known = np.array([self._variables[n].valueReference for n in points.names], dtype=np.uint32)
@@ -230,5 +232,6 @@ class Player:
             for _ in range(after[k]):
                 get(outputs, m, row)
                 row += 8 * m
+            alive()
             do_step(time[k], steps[k])
         return rows

@@ -8,14 +8,20 @@ import re
 import shutil
 import sys
 import tempfile
+import time
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from glob import escape
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+#: [s].
+DAY = 86400.0
+#: Files of this process that are not yet in their place.
+_UNFINISHED: set[str] = set()
 #: Names that systems give the streams of a process.
 _STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
 _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d+)")
@@ -101,8 +107,11 @@ def replacing(path: Path) -> Iterator[Path]:
     """
     path = place(path)
     through = flows(path)
+    if not through:
+        _collect(path)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if through else path.parent)
     os.close(handle)
+    _UNFINISHED.add(name)
     _note(Path(name), read=False)
     try:
         yield Path(name)
@@ -118,3 +127,19 @@ def replacing(path: Path) -> Iterator[Path]:
         os.replace(name, path)
     finally:
         Path(name).unlink(missing_ok=True)
+        _UNFINISHED.discard(name)
+
+
+def remove_unfinished() -> None:
+    """Remove the files of this process that are not yet in their place: it ends at once."""
+    for name in tuple(_UNFINISHED):
+        with suppress(OSError):
+            os.unlink(name)
+
+
+def _collect(path: Path) -> None:
+    """Remove what processes that were killed more than a day ago have left beside a place."""
+    for left in path.parent.glob(f".{escape(path.name)}.????????"):
+        with suppress(OSError):
+            if left.is_file() and time.time() - left.stat().st_mtime > DAY:
+                left.unlink()

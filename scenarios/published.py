@@ -20,6 +20,7 @@ How the model gives it is one of:
     run = "contacts"                      # the contacts over a mesh cycle: set, path, at = 60 (theta_deg, linear)
     run = "law"                           # law = "cycloid.curvature", args = { ... }, item = 0
     run = "rows"                          # of = { a = "name of a row", b = "of another" }, path = "a - b"
+    run = "new"                           # a machine drawn up from set = { stages = "worm", ratio = 20, ... }: path
     run = "print"                         # path = "0.0303 + 0.0588": arithmetic on printed numbers alone
 
 A `path` may be an expression, in SI: "3 * gear_set.P_loss". One that compares, such as "max(Lambda) < 0.7", is a
@@ -52,6 +53,7 @@ _NEEDED: Mapping[str, tuple[str, ...]] = {
     "contacts": ("path",),
     "law": ("law", "args"),
     "rows": ("of", "path"),
+    "new": ("set", "path"),
     "print": ("path",),
 }
 _ALLOWED: Mapping[str, tuple[str, ...]] = {
@@ -63,7 +65,7 @@ _ALLOWED: Mapping[str, tuple[str, ...]] = {
     "law": ("item",),
 }
 
-Run = Literal["steady", "held", "design", "losses", "contacts", "law", "rows", "print"]
+Run = Literal["steady", "held", "design", "losses", "contacts", "law", "rows", "new", "print"]
 
 GOLDEN = Path(str(files("gearheat.model").joinpath("golden")))
 

@@ -41,6 +41,8 @@ DISC |= dict(d_CZ=0.035, D_CZ=0.04, mu_r1=0.005, mu_r2=0.0045, mu_r3=0.0045)
 LINEAR = dict(emissivity=0.8, T_1=353.15, T_2=293.15)
 
 #: Values of one plausible example of every part.
+JOINT_METAL = dict(k=45.0, sigma=3e-6, m=0.15, H=2e9)
+JOINT = JOINT_METAL | dict(A=0.03, count=4.0, d=0.012, gap=2e-4, k_gap=0.026)
 EXAMPLES: dict[str, dict] = {
     "ShaftEnd": dict(given=("w", "tau")),
     "FixedFlange": {},
@@ -109,6 +111,10 @@ EXAMPLES: dict[str, dict] = {
     "ThermalConductor": dict(G=60.0),
     "PlaneWall": dict(k=50.0, A=0.4, d=0.01),
     "CylinderWall": dict(k=50.0, L=0.3, r_i=0.14, r_o=0.15),
+    "JointConductor": JOINT,
+    "FootConductor": JOINT | dict(A_base=0.09, k_base=1.4),
+    "FrameConductor": JOINT | dict(k_frame=45.0, A_frame=0.2, t_frame=0.016, L_frame=0.1, h_frame=10.0),
+    "BearingConductor": JOINT_METAL | dict(d=0.04, D=0.09, B=0.023, p_fit=10e6, gap=10e-6, k_gap=0.13),
     "WettedWall": dict(h=300.0, A=0.5),
     "BeltContact": dict(h=20.0, A=0.7, dT_belt=4.0),
     "BoxCooling": BOX,

@@ -217,6 +217,11 @@ class Component:
         """What must hold between the parameters, each made by `relation`."""
         return ()
 
+    @classmethod
+    def spread(cls) -> Iterable[Mapping[str, str]]:
+        """What the laws for such a part give at the same sizes: a line of texts each, the recommended one first."""
+        return ()
+
     def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterable[str]:
         """What cannot be between the part and those that it meets, each with what to do.
 

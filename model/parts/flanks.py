@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import cos, pi, tan
+from math import cos, inf, pi, tan
 
 from ..core.component import Component
 from ..laws.gears import (
@@ -22,8 +22,8 @@ from .teeth import ToothedPart
 
 #: Thermal contact coefficient of case-hardened steel, root of 50 W/(m.K) times 3.8e6 J/(m3.K) [J/(m2.K.s0.5)].
 STEEL = 13784.0
-#: Torque below which a planetary set at rest or without friction tells no speed [N.m].
-NOTHING = 1e-12
+#: Share of a flank's way from the pitch point to its base circle that touches at most: undercut teeth end there [1].
+INVOLUTE = 0.95
 
 
 @dataclass(frozen=True)
@@ -107,13 +107,13 @@ def flanks_of(part: Component, values: Mapping[str, float]) -> Iterator[Flanks]:
 
     Args:
         part: of any type
-        values: its parameters and outputs at an operating point, by key, in SI
+        values: its parameters and outputs at an operating point, by key, and speeds of its shafts, "sun.w", in SI
     """
     if isinstance(part, GearPair):
         mesh = _flanks(part, values, ("", ""), part.teeth(), part.addendum_ratios())
         yield replace(mesh, w=values["u_m"] / mesh.rho_C)
     elif isinstance(part, PlanetarySet):
-        w = values["P_loss_sp"] / max(values["tau_loss_sp"], NOTHING)  # of the sun against the carrier
+        w = abs(values["sun.w"] - values["carrier.w"])
         for kind, z_a, z_b in (("sp", part.z_1, part.z_2), ("pr", part.z_2, -part.z_3)):
             tips = [_standard_addendum(part, z) for z in (z_a, z_b)]
             scale = getattr(part, f"eps_alpha_{kind}") / sum(tips)
@@ -141,14 +141,16 @@ def _flanks(
         return part.number_at(expression, values)
 
     alpha_t, alpha_wt = part.working_angle()
+    z = number(teeth[0]), number(teeth[1])
+    ends = [INVOLUTE * k / (2 * pi) * tan(number(alpha_wt)) if k > 0 else inf for k in z]
     return Flanks(
         name=part.name + endings[0],
-        z=(number(teeth[0]), number(teeth[1])),
+        z=z,
         alpha_t=number(alpha_t),
         alpha_wt=number(alpha_wt),
         beta_b=number(base_helix_angle(part.alpha_n, part.beta)),
         r_b=number(base_diameter(part.radius(teeth[0]), alpha_t)),
-        eps=(number(addendum[0]), number(addendum[1])),
+        eps=(min(number(addendum[0]), ends[1]), min(number(addendum[1]), ends[0])),
         eps_beta=number(overlap_ratio(part.b, part.m_n, part.beta)),
         b=values["b"],
         a_w=values["a_w"],

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.convection import R_AIR, SEA_LEVEL, air_properties
 from ..laws.gap_seal import gap_torque
+from ..laws.iso14179_1 import seal_torque
 from ..laws.journal import film_torque, petrov_torque, solid_share
 from ..laws.sealing import lip_conductance, lip_seal_torque, oil_seal_torque
 from ..laws.smooth import Num, friction_sign, smooth_magnitude
@@ -45,16 +46,38 @@ class Friction(Component):
 
 
 class LipSeal(Friction):
-    """Radial lip seal: a torque that depends on the shaft's diameter alone."""
+    """Radial lip seal: a torque that depends on the shaft's diameter alone.
+
+    Laws for lip seals differ by more than three times at large shafts. Recommended is "square": the force of the lip on
+    its circumference is the same at all sizes. From 33 mm on it lies between "linear", that of ISO/TR 14179-1 for
+    nitrile rubber, and `OilLipSeal`, that of ISO/TR 14179-2.
+    """
 
     role: ClassVar[str] = "seal"
 
+    law = Choice(("square", "linear"), "how the torque grows with the diameter", default="square")
     d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
-    c_sh = Parameter("N/m", "friction torque per square of the diameter", nominal=50.0, at_least=0.0)
+    c_sh = Parameter("N/m", "friction torque per square of the diameter, with square", nominal=50.0, at_least=0.0)
+    c_d = Parameter("N", "friction torque per diameter, with linear: 2.429 N for nitrile rubber", at_least=0.0)
+
+    def has(self, name: str) -> bool:
+        """Each law has its constant."""
+        return name != ("c_sh" if self.choices["law"] == "linear" else "c_d")
 
     def torque(self) -> Num:
         """Friction torque of one seal [N.m]."""
-        return lip_seal_torque(self.d_sh, self.c_sh)
+        return seal_torque(self.d_sh, self.c_d) if self.law == "linear" else lip_seal_torque(self.d_sh, self.c_sh)
+
+    @classmethod
+    def spread(cls) -> Iterable[Mapping[str, str]]:
+        """Torques of one seal in oil of ISO VG 220 at 60 degC."""
+        laws: Mapping[str, Callable[[float], Num]] = {
+            'LipSeal, law = "square" (recommended)': lip_seal_torque,
+            'LipSeal, law = "linear"': seal_torque,
+            "OilLipSeal": lambda d: oil_seal_torque(333.15, 220e-6, d),
+        }
+        for name, torque in laws.items():
+            yield {"law": name} | {f"{d} mm [N.m]": f"{float(torque(d / 1000)):.3g}" for d in (30, 55, 100)}
 
 
 class OilLipSeal(Friction):
@@ -90,6 +113,11 @@ class OilLipSeal(Friction):
             rise = self.P_loss / self.count / lip_conductance(self.d_sh, self.h, self.k)
         yield equation("temperature of the lip", self.T_lip, self.lubricant.T + rise)
         yield from super().equations()
+
+    @classmethod
+    def spread(cls) -> Iterable[Mapping[str, str]]:
+        """Beside those of a lip seal."""
+        return LipSeal.spread()
 
 
 class LabyrinthSeal(Friction):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
@@ -89,7 +89,7 @@ class OilBath(LubricantProperties):
     def has(self, name: str) -> bool:
         """The level is told where it is given, and what moves it where it moves."""
         if name in MOTION:
-            return bool(self.choices["in_motion"]) and "level" in self.told
+            return bool(self.choices["in_motion"])
         return name != "sump" or "level" in self.told
 
     def viscosity(self, T: Num) -> Num:
@@ -108,6 +108,11 @@ class OilBath(LubricantProperties):
         if self.has("sump"):
             yield from self.standing()
         yield from self.properties()
+
+    def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterator[str]:
+        """A level that moves is given."""
+        if self.in_motion and not self.has("sump"):
+            yield f"{self.name} is in_motion and has no level. Give it: the height of its surface at rest."
 
     def standing(self) -> Iterator[Equation]:
         """How high it stands."""

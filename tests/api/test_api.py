@@ -71,6 +71,15 @@ def test_a_steady_state_by_texts_numbers_and_quantities(rig: gh.Rig) -> None:
     assert isinstance(hot.plot(), Axes)
 
 
+def test_which_way_power_flows_is_said_first() -> None:
+    hot = gh.steady("helical_two_stage")
+    power = hot.power()
+    assert list(power) == ["input", "output"] and sum(power.values()) == pytest.approx(hot["efficiency.P_loss"])
+    assert f"{power['input'] / 1000:.4g} kW in at input" in hot.title and not hot.backward
+    turned = gh.steady("helical_two_stage", {"output.tau": -hot["output.tau"]})
+    assert turned.backward and list(turned.power()) == ["output", "input"] and "in at output" in turned.title
+
+
 def test_a_result_shows_itself(rig: gh.Rig) -> None:
     hot = gh.steady(rig)
     assert len(repr(hot).splitlines()) == 12 and "81.78" in repr(hot) and "degC" in repr(hot)

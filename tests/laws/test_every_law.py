@@ -87,6 +87,7 @@ NOMINAL = {
     **{"stage": 12.0, "X_W": 1.0, "tau_test": 530.0, "eps_max": 0.9, "X_S": 1.0, "eta_B": 0.02},
     **{"alpha_B": 12e-9},
     **{"expansion": 6.5e-4, "share_air": 0.1, "v_gain": 35.0, "share_oil": 1e-3, "rho_air": 1.2},
+    **{"p": 1e7, "Z": 8.0, "D_w": 0.015, "hardness": 2e9},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -146,6 +147,8 @@ OWN = {
     "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},
     "conduction.plane_wall": {"k": 50.0, "d": 0.01},
     "conduction.cylinder_wall": {"k": 50.0},
+    "conduction.contact_coefficient": {"k": 50.0, "m": 0.1},
+    "conduction.ball_bearing_conductance": {"d_m": 0.065},
     "convection.nusselt_vertical_plate": {"Ra": 1e8},
     **{f"oil_convection.{key}": {"Pr": 800.0} for key in ("nusselt_laminar_plate", "nusselt_rotating_disc")},
     **{f"oil_convection.{key}_in_oil": {"Pr": 800.0} for key in ("forced_wall", "forced_disc", "natural_wall")},

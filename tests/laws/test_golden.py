@@ -32,7 +32,8 @@ UNITS = {
     "W at 250 K": 1 / 250,
 }
 KINDS = {"published", "corrected", "reproduced", "misprint"}
-#: Laws that whole chains compare with printed statements: test_planetary_chain.py, and what `verify` has of the rig.
+#: Laws that whole chains compare with printed statements: test_planetary_chain.py, tools/test_teeth.py, and what
+#: `verify` has of the rig.
 CHAINED = {
     "oil.walther_constants",
     "oil.pressure_viscosity",
@@ -42,6 +43,7 @@ CHAINED = {
     "mesh.load_per_contact_length",
     "film.film_thickness",
     "film.specific_film_thickness",
+    "tooth_flanks.flash_temperature",
 }
 
 

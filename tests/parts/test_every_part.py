@@ -31,6 +31,7 @@ CASES += [(kind, {"height": 0.1}) for kind in ("DeepGrooveBallBearing", "Tapered
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]
+CASES += [("LipSeal", {"law": "linear", "c_d": 2.429})]
 CASES += [("PreloadedPair", {"arrangement": "back-to-back", "contact": "balls"})]
 CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True})]
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]

@@ -2,6 +2,7 @@
 
 import pytest
 from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import StructureError
 from gearheat.model.laws.gear_churning import gear_churning_torque
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.steady import steady
@@ -42,6 +43,12 @@ def test_another_gear_in_the_sump_takes_oil_from_the_first() -> None:
 def test_air_lifts_the_level_and_lightens_the_oil() -> None:
     pure, foaming = (run(1.0, in_motion=True, share_air=x, **STANDING) for x in (0.0, 0.1))
     assert foaming["slow.h"] - pure["slow.h"] == pytest.approx(4e-3 * 0.1 / 0.9 / 0.08, rel=0.01)
+
+
+def test_a_level_that_moves_is_given() -> None:
+    moving = {f"oil.{k}": v for k, v in STANDING.items() if k != "level"} | {"oil.in_motion": True}
+    with pytest.raises(StructureError, match=r"oil is in_motion and has no level\. Give it"):
+        flatten(assemble(load("helical_two_stage").spec.with_values(moving)))
 
 
 def test_a_wall_brakes_in_thick_oil_only() -> None:

@@ -47,6 +47,7 @@ def test_all_are_listed() -> None:
         "cycloidal_printed",
         "drum_motor",
         "drum_motor_planetary",
+        "e_axle",
         "fzg_four_square",
         "harmonic",
         "harmonic_printed",

@@ -26,7 +26,7 @@ VERIFIED = re.findall(
     re.MULTILINE,
 )
 #: What is offered to users of the library beyond that.
-OFFERED = {"model/run/search.py: sensitivities"}
+OFFERED = {"model/run/search.py: sensitivities", "model/laws/film_point.py: nijenbanning_central"}
 #: Methods of results that notebooks and users call.
 METHODS = {"_repr_html_", "to_pandas", "to_xarray"}
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from gearheat.fmu import compiling, described
+from gearheat.fmu import apart, compiling, described
 from gearheat.fmu.export import archive
 from gearheat.fmu.play import Player
 from gearheat.model.errors import FmuError
@@ -176,3 +176,48 @@ def test_a_binary_for_another_machine(gearheat, tank, duty, tmp_path):
     assert answer.code == 2
     assert "binaries for win32" in answer.err
     assert "Ask its maker" in answer.err
+
+
+@pytest.mark.parametrize(
+    ("k", "words"),
+    [
+        (96, "tank.fmu: its code has crashed (signal"),
+        (97, "tank.fmu: has not made a step in 6 s: its code hangs"),
+        (98, "tank.fmu: its code has crashed (signal"),
+        (99, "tank.fmu: its code has ended the program (exit code 0)"),
+    ],
+)
+def test_code_that_ends_crashes_or_hangs_takes_nothing_with_it(gearheat, tank, duty, tmp_path, monkeypatch, k, words):
+    if k == 97:
+        monkeypatch.setattr(apart, "PATIENCE", 6.0)
+    answer = gearheat("play", tank(), "--trust", "--duty", duty, "-o", tmp_path / "out.csv", "--set", f"k={k} 1/s")
+    assert answer.code == 2
+    assert words in answer.err
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_a_binary_of_the_cache_is_used_only_as_it_was_written(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(compiling, "_compile", lambda files, target: b"made")
+    compiling.binary("int x;", compiling.host_platform())
+    (kept,) = (tmp_path / "cache" / "gearheat" / "binaries").iterdir()
+    monkeypatch.setattr(compiling, "_compile", lambda files, target: b"anew")
+    asked = ("int x;", compiling.host_platform())
+    assert compiling.binary(*asked) == b"made"
+    content = kept.read_bytes()
+    kept.write_bytes(content[:-1] + b"X")
+    assert compiling.binary(*asked) == b"anew"
+    if os.name != "nt":
+        assert [folder.stat().st_mode & 0o77 for folder in (kept.parent, kept.parents[1])] == [0, 0]
+        kept.parent.chmod(0o777)
+        monkeypatch.setattr(compiling, "_compile", lambda files, target: b"third")
+        assert compiling.binary(*asked) == b"third"
+
+
+def test_a_user_without_a_home(monkeypatch):
+    def nobody():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(compiling.Path, "home", nobody)
+    assert compiling.cache_folder().name == "gearheat"

@@ -33,6 +33,16 @@ def test_everything_about_a_type(kind):
     assert set(example["part"]["name"]) <= set(SCHEMA["$defs"][f"part_{kind}"]["properties"])
 
 
+def test_a_lip_seal_tells_what_other_laws_give(gearheat):
+    """The recommended law first, the spread of three and more at one shaft; parts of one law alone have none."""
+    lines = gearheat("parts", "LipSeal", "--json", "-").json["spread"]
+    assert "recommended" in lines[0]["law"]
+    torques = [float(line["100 mm [N.m]"]) for line in lines]
+    assert max(torques) > 3 * min(torques)
+    assert "What laws give at the same sizes" in gearheat("parts", "OilLipSeal").out
+    assert parts.describe_part("LabyrinthSeal")["spread"] == []
+
+
 def test_one_type_for_a_reader(gearheat):
     answer = gearheat("parts", "LipSeal")
     assert answer.code == 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, radians
+from math import isfinite, pi, radians
 
 import gearheat as gh
 import pytest
@@ -116,6 +116,39 @@ def test_either_direction_of_rotation_and_power_feels_the_same(felt):
     turned = gh.teeth(RIG, {"input.w": "-1450 rpm", "output.tau": "590 N.m"})
     for one, other in zip(felt.found["meshes"], turned.found["meshes"], strict=True):
         assert one["columns"]["network"] == pytest.approx(other["columns"]["network"], rel=1e-6)
+
+
+def test_planets_without_friction_turn_all_the_same():
+    """Only the flash of the network is none."""
+    mesh = gh.teeth("planetary", {"gear_set.k_mu": 0.0}).found["meshes"][0]
+    assert mesh["columns"]["network"]["flash_K"] == 0
+    assert mesh["columns"]["flash"]["flash_K"] > 5
+
+
+def test_undercut_teeth_end_before_their_base_circle():
+    """Tips of the wheel that reach beyond the pinion's involute touch nothing there."""
+    shifted = gh.teeth(RIG, {"stage_2.x_1": -0.45, "stage_2.x_2": 0.45}).found["meshes"][1]
+    plain = gh.teeth(RIG).found["meshes"][1]
+    assert shifted["path"][0]["y"] < plain["path"][0]["y"]
+    assert plain["columns"]["network"]["flash_K"] < shifted["columns"]["network"]["flash_K"] < 200
+
+
+@pytest.mark.parametrize(
+    ("room", "tau"), [("-30 degC", "-40 N.m"), ("-30 degC", "-4000 N.m"), ("60 degC", "-4000 N.m")]
+)
+def test_cold_and_heavily_loaded_teeth_have_finite_figures(room, tau):
+    found = gh.teeth(RIG, {"room.T": room, "output.tau": tau}, load_factor=2.0).found["meshes"]
+    assert all(v > 0 for m in found for c in m["columns"].values() for key, v in c.items() if key.startswith("S_"))
+    figures = [v for mesh in found for column in mesh["columns"].values() for v in column.values()]
+    figures += [v for mesh in found for point in mesh["path"] for v in point.values()]
+    assert all(isfinite(v) for v in figures)
+
+
+def test_a_film_of_teeth_without_load_is_named(gearheat, tmp_path):
+    options = ("--part", "stage_1", "-o", tmp_path / "film.csv", "--set", "output.tau=0 N.m")
+    answer = gearheat("film", RIG, *options)
+    assert answer.code == 2
+    assert "a contact without load or speed has no film" in answer.err, answer.err
 
 
 def test_planets_have_two_kinds_of_meshes(gearheat, tmp_path):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import gearheat as gh
 import pytest
 from gearheat.model.errors import ScenarioError
 from gearheat.scenarios.load import RIGS, list_rigs
 from gearheat.scenarios.published import Row, golden_rows, read_published
 from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.verify.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judge
-from gearheat.tools.verify.verify import law_of
+from gearheat.tools.verify.verify import CATALOGUES, Plates, _judge_rows, _tell_losses, law_of
 from pages import problems_of
 
 PAGE = (PAGES / "trust" / "verified.md").read_text(encoding="utf-8")
@@ -35,7 +36,7 @@ def test_every_number_of_every_rig_and_the_counts_of_the_page(gearheat, tmp_path
     assert not [row["name"] for row in every if row["verdict"] == CONTRADICTED and not row["why"]]
     assert answer.code == 0
     assert parts.keys() >= set(list_rigs())
-    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 2  # laws and sources
+    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 3  # catalogues, laws and sources
     printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, PAGE, re.MULTILINE)}
     counted = {name: [*part["counts"].values(), *part["kinds"].values()] for name, part in parts.items()}
     assert printed == {name: numbers for name, numbers in counted.items() if any(numbers)}
@@ -45,6 +46,18 @@ def test_the_breakdown_of_the_planetary_rig_has_every_test_and_part() -> None:
     cells = [r for r in read_published(RIGS / "planetary" / "published.toml") if r.group]
     assert len(cells) == 36 * 7
     assert all(r.tol == 0.3 and r.run == "losses" for r in cells)
+
+
+def test_catalogues_are_20_statements_or_more_and_their_ratio_is_told() -> None:
+    """Rows of makers need no rig; of one machine here, all in `test_every_number_of_every_rig_...`."""
+    rows = read_published(CATALOGUES)
+    assert len(rows) >= 20
+    assert all(r.where and r.published is not None for r in rows)
+    one = next(r for r in rows if r.run == "new")
+    (verdict,) = _judge_rows([one], Plates(gh.new), lambda _: None)
+    told = _tell_losses(verdict)
+    assert told.verdict == REPRODUCED
+    assert told.why == f"losses {(100 - told.model) / (100 - one.published):.2f} of those published"
 
 
 def test_golden_rows_of_laws_are_rows_as_well() -> None:

@@ -41,6 +41,22 @@ AIR = 0.12
 FAN = 3.0
 #: How much warmer the oil is than the water or air of its cooler [K].
 COOLED = 50.0
+#: Iron of ribs and flanges over that of the walls [1].
+RIBBED = 0.25
+#: Height of a rib over its thickness [1].
+RIBS = 2.5
+#: What a unit stands on.
+BASES = ("concrete", "steel", "free")
+#: Bolts of a foot.
+BOLTS = 4
+#: Diameter of a bolt over the wall's thickness [1].
+BOLT = 1.5
+#: Width of the two strips that a foot stands on over that of the housing [1].
+STRIPS = 2 * 0.15
+#: Thickness of a steel frame over that of the wall [1].
+FRAME = 2.0
+#: How far it reaches beyond the foot, at either end, over its length [1].
+BEYOND = 0.5
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 #: Kind of stage -> the size by which one is known.
@@ -77,6 +93,7 @@ def new(
     bearings: str = "auto",
     fan: bool = False,
     cooler: bool = False,
+    base: str = "concrete",
     out: str | Path | None = None,
 ) -> NewRig:
     """A rig of your own from a name plate: it runs at once, and says the rule of every number.
@@ -91,6 +108,7 @@ def new(
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
         fan: on the input shaft
         cooler: of the oil, for the losses at the name plate
+        base: what its foot stands on, "concrete" or a "steel" frame; "free" on rubber, or where it hangs on its shaft
         out: file to write; none is left if None
 
     Raises:
@@ -106,6 +124,8 @@ def new(
     kinds = [kind.strip() for kind in words if kind.strip()]
     made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"), bearings)
     entry = _oil(oil)
+    if base not in BASES:
+        raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
     with tempfile.TemporaryDirectory() as folder:
@@ -114,7 +134,7 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry, fan, cooler))
+        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler))
         try:
             scenario = read_rig(path)
             flat = flat_of(scenario)
@@ -123,7 +143,8 @@ def new(
             path.unlink()
             why = error.problems[0]
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
-    kept = {key: float(rest[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
+    told = ("oil.T", "efficiency.P_loss", "efficiency.eta", *(["foot.Q_flow"] if base != "free" else []))
+    kept = {key: float(rest[key][0]) for key in told}
     sizes = {
         "schema": "gearheat.new/1",
         "file": str(path),
@@ -134,6 +155,8 @@ def new(
         "oil_degC": kept["oil.T"] - 273.15,
         "loss_W": kept["efficiency.P_loss"],
         "efficiency": kept["efficiency.eta"],
+        "base": base,
+        "foot_share": kept.get("foot.Q_flow", 0.0) / kept["efficiency.P_loss"],
     }
     return NewRig(scenario, sizes, tuple(_notes(made, sizes)))
 
@@ -160,7 +183,7 @@ def _oil(name: str) -> str:
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, fan: bool, cooler: bool) -> str:
+def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, cooler: bool) -> str:
     """The rig file of a unit.
 
     Args:
@@ -168,6 +191,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, fan: bool, cooler: bool) ->
         doc: what it is
         speed: of the input, as it is written
         oil: entry of the catalogue
+        base: one of `BASES`
         fan: whether one is on the input shaft
         cooler: whether the oil has one
     """
@@ -195,6 +219,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, fan: bool, cooler: bool) ->
         "fan": _fan(made) if fan else None,
         "cooled": COOLED,
         "cooler": _cooler(made, efficiency) if cooler else None,
+        "foot": _foot(made, base),
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
@@ -248,6 +273,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     places = [
         {
             "name": f"{names[k]}_bearing_{end}",
+            "path": f"{names[k]}_path_{end}",
             "bearing": bearing,
             "life": _num(life),
             "dips": sizing.stands_in_oil(made, bearing),
@@ -280,12 +306,35 @@ def _cooler(made: Unit, efficiency: float) -> float:
     return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
 
 
+def _foot(made: Unit, base: str) -> dict[str, Any] | None:
+    """Foot of a unit: two strips along the housing, and what they stand on."""
+    if base == "free":
+        return None
+    outline, beyond = made.length * made.width, BEYOND * made.length
+    on = {
+        "concrete": "heat spreads below its outline into a concrete floor",
+        "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
+    }
+    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {BOLTS} bolts {BOLT:g} times as thick as its walls"
+    return {
+        "base": base,
+        "A": STRIPS * outline,
+        "count": BOLTS,
+        "d": BOLT * made.wall,
+        "outline": outline,
+        "A_frame": 2 * 2 * beyond * made.width,
+        "t_frame": FRAME * made.wall,
+        "L_frame": beyond,
+        "rule": f"{rule}, 0.2 mm of air beside them; {on[base]}",
+    }
+
+
 def _bodies(made: Unit) -> dict[str, float]:
     """Capacities, conductances and the box."""
     slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
     seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
     shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
-    mass = 1.25 * IRON * made.area * made.wall
+    mass = (1 + RIBBED) * IRON * made.area * made.wall
     return {
         "inertia": sum(STEEL * s.inertia / i**2 for s, i in zip(made.stages, slow, strict=True)),
         "C_gears": 470 * STEEL * sum(s.volume for s in made.stages),
@@ -294,7 +343,9 @@ def _bodies(made: Unit) -> dict[str, float]:
         "C_half": 500 * mass / 2,
         "wall": made.wall,
         "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
-        "G_rings": 2.0 * 2 * len(made.shafts),
+        "A_fins": 2 * RIBBED * made.area,
+        "fin_height": RIBS * made.wall,
+        "ribs": RIBS,
         "area": made.area,
         "length": made.length,
         "width_box": made.width,

@@ -10,12 +10,15 @@ import sys
 def main() -> None:
     """Entry point of the program."""
     try:
-        from .app import program
+        from .ending import ending_well
 
-        try:
-            program()
-        finally:
-            sys.stdout.flush()
+        with ending_well():
+            try:
+                from .app import program
+
+                program()
+            finally:
+                sys.stdout.flush()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         sys.exit(130)

@@ -74,7 +74,7 @@ def verify(
 ) -> None:
     """Published numbers of each machine beside what the model gives."""
     console.writable(console.file_of(json), html)
-    numbers = gh.verify(rig)
+    numbers = gh.verify(rig, draw=gh.new)
     if html is not None:
         numbers.report(html)
     console.answer(numbers.as_dict(), json, lambda: _print_verification(numbers))

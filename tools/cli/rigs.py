@@ -24,12 +24,13 @@ def new(
     bearings: str = "auto",
     fan: bool = False,
     cooler: bool = False,
+    base: str = "concrete",
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     path = out or Path(f"{name}.toml")
-    chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler}
+    chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, out=path, **chosen)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
@@ -82,7 +83,7 @@ def _print_new(found: Mapping[str, Any]) -> None:
         print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
         print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
     print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
-    print(f"efficiency {100 * found['efficiency']:.2f} %")
+    print(f"efficiency {100 * found['efficiency']:.2f} %, {100 * found['foot_share']:.0f} % of the heat by the foot")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
 
 
@@ -187,6 +188,8 @@ def _print_type(found: Mapping[str, Any]) -> None:
     for title, keys in titles.items():
         if lines := found[title]:
             console.table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
+    if spread := found["spread"]:
+        console.table("What laws give at the same sizes", tuple(spread[0]), [list(line.values()) for line in spread])
     console.say(f"Equations: {'; '.join(found['equations'])}\n")
     if found["entries"]:
         console.say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")

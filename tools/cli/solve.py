@@ -196,6 +196,8 @@ def _print_point(title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, 
     if more := len(found["values"]) - len(rows):
         console.say(f"{more} more values with --all")
     console.say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
+    if found.get("backward"):
+        console.note("power flows the other way than at the operating point of the rig file; a sign may be wrong")
     print_outside(found["outside"])
     print_unchecked(found["unchecked"])
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 import signal
+import tempfile
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from typing import Any
 
 import numpy as np
 
+from ...fmu.apart import begin_worker
 from ...fmu.batch_library import cores
 from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
@@ -168,13 +170,18 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     if count == 1:
         yield None
         return
-    deaf = (signal.SIGINT, signal.SIG_IGN)  # the parent alone answers Ctrl-C
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=signal.signal, initargs=deaf)
+    pool = ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=begin_worker, initargs=(tempfile.tempdir,)
+    )
     try:
         with _deaf():
             for _ in range(count):
                 pool.submit(int)
         yield pool
+    except KeyboardInterrupt:
+        for worker in active_children():  # what they have finished is kept
+            worker.kill()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 

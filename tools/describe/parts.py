@@ -60,7 +60,7 @@ def parts(kind: str | None = None) -> PartTypes:
 
 
 def describe_part(kind: str) -> dict[str, Any]:
-    """Ports, parameters, choices, inputs, states, outputs, equations, laws and an example of a type in `PARTS`."""
+    """Ports, parameters, choices, inputs, states, outputs, equations, laws, their spread, an example of a part type."""
     cls = PARTS[kind]
     where, values, entries = _example(kind)
     equations, laws = _inside(cls, values)
@@ -81,6 +81,7 @@ def describe_part(kind: str) -> dict[str, Any]:
         "entries": [k for k in FILES if any(_fits(e, cls) for e in catalogue(k).values())],
         "equations": equations,
         "laws": laws,
+        "spread": [dict(line) for line in cls.spread()],
         "example": _snippet(kind, values, entries),
         "example_from": where,
     }

@@ -106,28 +106,29 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         >>> import gearheat as gh
         >>> gh.play("planetary.fmu", "duty.csv").plot("oil.T")  # doctest: +SKIP
     """
+    from ...fmu.apart import play_apart
     from ...fmu.described import is_trusted
-    from ...fmu.play import Player
+    from ...fmu.play import play as play_fmu
 
     fmu = Path(fmu)
     dt = to_si(step, "s", name="--step")
     about = describe(fmu)
     made_by = about.description.generationTool or "an unknown tool"
-    if not is_trusted(fmu):
+    if not (ours := is_trusted(fmu)):
         if not trust:
             raise FmuError(
                 f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code"
                 " of it with your rights. Add --trust if you trust its maker."
             )
         note(f"{fmu}: running native code of {made_by}")
-    with Player(about) as player, duty_file(duty) as path:
+    with duty_file(duty) as path:
         schedule = read_duty(path, about.quantities("input"))
         refuse_given(set, schedule.values, path.name)
         start = _start(about, assignments_of(set, lambda: about.quantities("start")))
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
         start = _at_room(about, first) | start
-        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
-        played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
+    inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
+    played = (play_fmu if ours else play_apart)(fmu, inputs, schedule.stop, dt, begin=schedule.start, start=start)
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     before = {"schema": "gearheat.play/1", "fmu": str(fmu), "out": None, "plot": None}

@@ -208,11 +208,11 @@ def rate(f: Flanks, T_bulk: float, oil: Rating) -> tuple[list[Point], dict[str, 
 
 
 def _safeties(told: Mapping[str, float], limits: Mapping[str, float], T_oil_C: float) -> dict[str, float]:
-    """The safeties that what a method tells allows."""
+    """The safeties that what a method tells allows; none of a contact below the oil, or below 0 degC on average."""
     found = {}
-    if "T_contact_C" in told:
+    if told.get("T_contact_C", T_oil_C) > T_oil_C:
         found["S_flash"] = (limits["T_scuffing_C"] - T_oil_C) / (told["T_contact_C"] - T_oil_C)
-    if "T_integral_C" in told:
+    if told.get("T_integral_C", 0.0) > 0:
         found["S_integral"] = limits["T_integral_C"] / told["T_integral_C"]
     if "lambda_GF" in told:
         found["S_micropitting"] = told["lambda_GF"] / limits["lambda_GF"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ...model.core.component import Component, Equation, equation
 from ...model.core.declare import Output
@@ -15,7 +15,7 @@ from ...model.parts.flanks import Flanks, flanks_of
 from ...model.parts.gears import GearPair
 from ...model.parts.lubrication import LubricantProperties
 from ...model.parts.planetary import PlanetarySet
-from ...model.parts.ports import HeatPort, Lubricant
+from ...model.parts.ports import Flange, HeatPort, Lubricant
 from ...model.run.steady import steady
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
@@ -175,13 +175,14 @@ def _meshes(scenario: Scenario, K: float, scuffing: int, micropitting: int) -> I
     toothed = [part for part in parts.values() if isinstance(part, GearPair | PlanetarySet)]
     if not toothed:
         raise ScenarioError(f"{scenario.name}: no part has involute teeth. Take a rig with a gear pair or planets.")
-    probed = replace(scenario, spec=_with_readings(scenario.spec, [part.name for part in toothed]))
+    probed = replace(scenario, spec=_with_readings(scenario.spec, toothed))
     flat = flat_of(probed)
     result, problems, found = steady(flat, conditions(probed, flat)), Problems(), []
     lubricants = [part for part in parts.values() if isinstance(part, LubricantProperties)]
     for part in toothed:
-        values = values_of(part, flat, result)
-        T_bulk, T_oil = (float(result[f"{_reading(part.name, port)}.T"][0]) for port in READINGS)
+        read = {port: float(result[f"{_reading(part, port)}.{kind.key}"][0]) for port, kind in _readings(part)}
+        values = values_of(part, flat, result) | {f"{port}.w": value for port, value in read.items()}
+        T_bulk, T_oil = read["gears"], read["lubricant"]
         lubricant = lubricant_of(scenario.spec.connections, part.name, lubricants).values
         oil = Rating(K, scuffing, micropitting, oil_of(lubricant), T_oil, lubricant["X_L"], lubricant["nu_40"])
         for flanks in flanks_of(part, values):
@@ -196,7 +197,13 @@ def _meshes(scenario: Scenario, K: float, scuffing: int, micropitting: int) -> I
     yield from found
 
 
-class HeatReading(Component):
+class Reading(Component):
+    """Reads a potential at its port, and takes nothing."""
+
+    key: ClassVar[str] = "T"
+
+
+class HeatReading(Reading):
     """Temperature of a body."""
 
     port = HeatPort()
@@ -208,7 +215,7 @@ class HeatReading(Component):
         yield equation("no heat", self.port.Q_flow, 0.0)
 
 
-class OilReading(Component):
+class OilReading(Reading):
     """Temperature of a lubricant."""
 
     port = Lubricant()
@@ -219,18 +226,41 @@ class OilReading(Component):
         yield equation("temperature read", self.T, self.port.T)
 
 
-#: Port of a part with teeth -> the part that reads it.
-READINGS: Mapping[str, type[Component]] = {"gears": HeatReading, "lubricant": OilReading}
+class SpeedReading(Reading):
+    """Speed of a shaft."""
+
+    key = "w"
+    port = Flange()
+    w = Output("rad/s", "angular velocity", nominal=10.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """It takes no torque."""
+        yield equation("speed read", self.w, self.port.w)
+        yield equation("no torque", self.port.tau, 0.0)
 
 
-def _with_readings(spec: Spec, parts: Sequence[str]) -> Spec:
-    """The spec with a reading of the temperatures of gears and oil at each of some parts with teeth."""
-    wanted = [(part, port) for part in parts for port in READINGS]
-    probes = [PartSpec(_reading(part, port), READINGS[port].__name__) for part, port in wanted]
-    nets = [(f"{_reading(part, port)}.port", f"{part}.{port}") for part, port in wanted]
+#: Port of a part with teeth -> the part that reads it; a gear pair has no sun and no carrier.
+READINGS: Mapping[str, type[Reading]] = {
+    "gears": HeatReading,
+    "lubricant": OilReading,
+    "sun": SpeedReading,
+    "carrier": SpeedReading,
+}
+
+
+def _readings(part: Component) -> list[tuple[str, type[Reading]]]:
+    """The ports that are read of a part with teeth."""
+    return [(port, kind) for port, kind in READINGS.items() if port in part.ports]
+
+
+def _with_readings(spec: Spec, parts: Sequence[Component]) -> Spec:
+    """The spec with a reading of each of `READINGS` at some parts with teeth."""
+    wanted = [(part, port, kind.__name__) for part in parts for port, kind in _readings(part)]
+    probes = [PartSpec(_reading(part, port), kind) for part, port, kind in wanted]
+    nets = [(f"{_reading(part, port)}.port", f"{part.name}.{port}") for part, port, _ in wanted]
     return spec.with_parts(probes, nets, {kind.__name__: kind for kind in READINGS.values()})
 
 
-def _reading(part: str, port: str) -> str:
+def _reading(part: Component, port: str) -> str:
     """Name of the reading at a port of a part."""
-    return f"reading_{part}_{port}"
+    return f"reading_{part.name}_{port}"

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...model.core.declare import Port, State, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
@@ -32,11 +34,13 @@ class SteadyState(Quantities):
         scenario: the rig as set
         flat: its model
         result: states, inputs and outputs in SI, with the power balance and the laws used
+        backward: whether power flows the other way than at the operating point of the rig file
     """
 
     scenario: Scenario
     flat: FlatModel
     result: Result
+    backward: bool
 
     def __getitem__(self, name: str) -> float:
         """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
@@ -52,10 +56,17 @@ class SteadyState(Quantities):
                 found[part] = found.get(part, 0.0) + self[name]
         return found
 
+    def power(self) -> dict[str, float]:
+        """Power into the gearbox at each shaft end [W], below zero where it flows out; the largest first."""
+        ends = [e for e in self.scenario.spec.of_type("ShaftEnd") if {f"{e}.w", f"{e}.tau"} <= set(self.result.columns)]
+        each = {end: self[f"{end}.w"] * self[f"{end}.tau"] for end in ends}
+        return dict(sorted(each.items(), key=lambda item: -item[1]))
+
     @property
     def title(self) -> str:
-        """The rig and what is shown of it."""
-        return f"{self.scenario.name}: steady state"
+        """The rig, what is shown of it, and which way power flows."""
+        flows = [f"{_kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
+        return ", ".join([f"{self.scenario.name}: steady state", *flows])
 
     @property
     def first(self) -> list[str]:
@@ -72,6 +83,8 @@ class SteadyState(Quantities):
             "schema": "gearheat.steady/1",
             "rig": self.scenario.name,
             "plot": None,
+            "power_W": self.power(),
+            "backward": self.backward,
             **point_of(self.flat, self.result),
             "unchecked": find_unchecked(self.scenario, self.flat),
         }
@@ -102,6 +115,10 @@ class SteadyState(Quantities):
         return panel
 
 
+def _kilowatts(P: float) -> str:
+    return f"{abs(P) / 1000:.4g} kW" if abs(P) >= 1000 else f"{abs(P):.4g} W"
+
+
 def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     """Temperatures and losses of a rig at rest with its surroundings.
 
@@ -119,9 +136,13 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
         >>> hot.to("oil.T", "degC") > 80
         True
     """
-    scenario = adjust(scenario_of(rig), set)
+    usual = scenario_of(rig)
+    scenario = adjust(usual, set)
     flat = flat_of(scenario)
-    return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)))
+    given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
+    signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
+    backward = len(given) == 2 and signs[0] * signs[1] < 0
+    return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)), backward)
 
 
 def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list[str]:

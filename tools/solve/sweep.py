@@ -15,6 +15,7 @@ import numpy as np
 
 from ...fmu.batch import Status
 from ...model.errors import SolveError
+from ...model.files import flows
 from ...model.units import from_si, show_unit
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
 from ..show.console import counting, note
@@ -187,7 +188,9 @@ def _run(request: Request, folder: Path) -> Sweep:
     """Plan, solve what an earlier run has not finished, write the table; a sweep without one works in the folder."""
     plan = plan_sweep(request)
     out, blocks = request.out, plan.blocks
-    with Store(work_file(out or folder / "rows.csv"), plan.key, len(plan.job.outputs) + len(TELLING)) as store:
+    lasting = out is not None and not flows(out)
+    place = work_file(out if out is not None and lasting else folder / "rows.csv")
+    with Store(place, plan.key, len(plan.job.outputs) + len(TELLING)) as store:
         left = [k for k in range(len(blocks)) if k not in store.places]
         done = len(plan.values) - sum(blocks[k].stop - blocks[k].start for k in left)
         if len(left) < len(blocks):
@@ -204,7 +207,8 @@ def _run(request: Request, folder: Path) -> Sweep:
                     store.put(k, found)
                     advance(blocks[k].stop - blocks[k].start)
         except KeyboardInterrupt:
-            note(f"The finished rows are kept in {store.path}: the same command goes on from there.")
+            if lasting:
+                note(f"The finished rows are kept in {store.path}: the same command goes on from there.")
             raise
         seconds = time.perf_counter() - began if left else None
         summary = Summary(plan)

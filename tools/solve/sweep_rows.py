@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import os
 import struct
-import tempfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ import numpy as np
 
 from ...fmu.batch import Batch, Status
 from ...model.errors import DataError
-from ...model.files import flows, replacing
+from ...model.files import replacing
 from ...model.run.schedule import Schedule
 from ...model.units import from_si, show_unit
 from ..show.console import note
@@ -48,8 +47,7 @@ Block = tuple[int, np.ndarray]
 
 def work_file(out: Path) -> Path:
     """Where the finished blocks of a sweep are kept until its table is written."""
-    folder = Path(tempfile.gettempdir()) if flows(out) else out.parent
-    return folder / f"{out.name}.part"
+    return out.with_name(f"{out.name}.part")
 
 
 class Store:

@@ -64,7 +64,7 @@ class RigValues:
     """Values of the rows of one rig, with what they share computed once."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario = scenario
+        self.scenario, self.name = scenario, scenario.name
         self._structures: dict[object, tuple[Scenario, FlatModel]] = {}
         self._losses: dict[tuple[str, ...], list[dict[str, Any]]] = {}
         self._cycles: dict[tuple[str, ...], ContactTable] = {}

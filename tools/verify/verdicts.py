@@ -32,6 +32,7 @@ HOW = {
     "contacts": "contacts of a cycle",
     "law": "law",
     "rows": "from other rows",
+    "new": "a machine of gearheat new",
     "print": "arithmetic on print",
 }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -23,8 +23,37 @@ from ..show.pages import page
 from .model_values import RigValues, single
 from .verdicts import HEAD, NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judge, kinds, lines
 
+#: Draws up a machine that has `sizes`, from a name and the options of a name plate.
+Draw = Callable[..., Any]
+#: What makers say, beside machines of `gearheat new`.
+CATALOGUES = Path(__file__).parent / "catalogues.toml"
 A = TypeVar("A")
 B = TypeVar("B")
+
+
+class Plates:
+    """Values of the rows of machines that are drawn up from name plates, each machine once."""
+
+    name = "catalogues"
+
+    def __init__(self, draw: Draw) -> None:
+        self._draw = draw
+        self._sizes: dict[str, Mapping[str, Any]] = {}
+
+    def value(self, row: Row) -> Value:
+        """What a machine gives for a row.
+
+        Args:
+            row: with run = "new", the options of the name plate in `set`
+        """
+        plate = repr(row.set)
+        if plate not in self._sizes:
+            self._sizes[plate] = self._draw("catalogue", **row.set).sizes
+        return Value(single(row.path, self._sizes[plate].__getitem__), labelled=True)
+
+
+#: Where the values of rows come from that no law gives.
+Values = RigValues | Plates
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +61,7 @@ class Verification(Display):
     """Published numbers beside what the model gives.
 
     Attributes:
-        machines: the rigs with their verdicts
+        machines: the rigs with their verdicts, and machines of `gearheat new` beside what catalogues say
         laws: verdicts on the golden rows of laws
     """
 
@@ -109,11 +138,12 @@ class Verification(Display):
         return Path(path)
 
 
-def verify(rig: RigLike | None = None) -> Verification:
-    """Published numbers of a rig and the laws it uses, or of all shipped rigs and all laws.
+def verify(rig: RigLike | None = None, *, draw: Draw | None = None) -> Verification:
+    """Published numbers of a rig and the laws it uses, or of all shipped rigs, all laws and catalogues.
 
     Args:
         rig: name, file or rig; all shipped rigs if None
+        draw: what draws up machines from name plates, `gearheat.new`; without it what catalogues say is left out
 
     Raises:
         ScenarioError: everything wrong with the tables of published numbers at once
@@ -126,9 +156,21 @@ def verify(rig: RigLike | None = None) -> Verification:
     rigs = [RigValues(scenario_of(name)) for name in ([rig] if rig is not None else list_rigs())]
     rows = _each(_published_of, [values.scenario for values in rigs])
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
-    with counting("values", sum(map(len, rows)) + len(laws)) as advance:
+    makers = read_published(CATALOGUES) if rig is None and draw is not None else ()
+    with counting("values", sum(map(len, rows)) + len(makers) + len(laws)) as advance:
         machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
+        if makers and draw is not None:
+            doc, says = "machines of gearheat new beside what catalogues say", "Nothing: it is compared."
+            told = tuple(map(_tell_losses, _judge_rows(makers, Plates(draw), advance)))
+            machines.append(Machine("catalogues", doc, says, told, ()))
         return Verification(machines, _judge_rows(laws, None, advance))
+
+
+def _tell_losses(verdict: Verdict) -> Verdict:
+    """A verdict on an efficiency, with the losses over those that are published."""
+    if verdict.row.run != "new" or verdict.model is None or verdict.expected is None:
+        return verdict
+    return replace(verdict, why=f"losses {(100 - verdict.model) / (100 - verdict.expected):.2f} of those published")
 
 
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
@@ -163,7 +205,7 @@ def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], No
     return Machine(scenario.name, scenario.doc, scenario.reproduces, _judge_rows(rows, values, advance), errata)
 
 
-def _judge_rows(rows: Sequence[Row], rig: RigValues | None, advance: Callable[[int], None]) -> tuple[Verdict, ...]:
+def _judge_rows(rows: Sequence[Row], rig: Values | None, advance: Callable[[int], None]) -> tuple[Verdict, ...]:
     """The verdict on each row; without a rig, on rows of laws alone. All that is wrong with them is told at once."""
     problems: list[str] = []
     known: dict[str, Verdict] = {}
@@ -179,13 +221,13 @@ def _judge_rows(rows: Sequence[Row], rig: RigValues | None, advance: Callable[[i
             problems += [p if p.startswith(row.name) else f"{row.name}: {p}" for p in error.problems]
         advance(1)
     if problems:
-        where = f"{rig.scenario.name}: " if rig else ""
+        where = f"{rig.name}: " if rig else ""
         raise ScenarioError([f"{where}{problem}" for problem in problems])
     order = {id(row): i for i, row in enumerate(rows)}
     return tuple(verdict for _, verdict in sorted(found, key=lambda pair: order[id(pair[0])]))
 
 
-def _value(row: Row, rig: RigValues | None, known: Mapping[str, Verdict]) -> Value:
+def _value(row: Row, rig: Values | None, known: Mapping[str, Verdict]) -> Value:
     """What the model, a law or arithmetic gives for a row."""
     if row.run == "law":
         return _law_value(row)
@@ -193,6 +235,8 @@ def _value(row: Row, rig: RigValues | None, known: Mapping[str, Verdict]) -> Val
         return _from_rows(row, known)
     if rig is None:
         raise ScenarioError(f'run = "{row.run}" needs a rig.')
+    if (row.run == "new") != isinstance(rig, Plates):
+        raise ScenarioError(f'{row.name}: run = "{row.run}" has no place here; a name plate stands in catalogues.toml.')
     return rig.value(row)
 
 
