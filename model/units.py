@@ -38,6 +38,12 @@ PER_MINUTE = dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rp
 ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
 
 
+#: Longest unit [characters].
+LONGEST = 80
+#: Powers of powers and exponents of three digits, which no unit has and whose values take for ever.
+_TOWER = re.compile(r"(\*\*|\^)[\s(+\-\d.]*(\*\*|\^)|(\*\*|\^)[\s(+\-]*\d{3}")
+
+
 @functools.cache
 def _registry() -> Any:
     import pint
@@ -56,9 +62,11 @@ def spell_unit(unit: str, *, turns: bool = True) -> str:
     return PER_MINUTE.get(text, SPELLINGS.get(text, text)) if turns else SPELLINGS.get(text, text)
 
 
-def _pint_unit(text: str) -> str:
+def _pint_unit(unit: str) -> str:
     """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
-    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spell_unit(text, turns=False).replace("·", "*").replace("^", "**"))
+    if len(unit) > LONGEST or _TOWER.search(unit):
+        raise ValueError(unit)
+    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spell_unit(unit, turns=False).replace("·", "*").replace("^", "**"))
     return "" if text == "1" else re.sub(r"([a-zA-Z])(-?\d)", r"\1**\2", text)
 
 

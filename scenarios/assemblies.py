@@ -30,7 +30,7 @@ from typing import Any
 from pydantic import Field
 
 from ..model.errors import ScenarioError, suggestion
-from .repeats import flat, join_tables, nets, spell_out
+from .repeats import MOST, flat, join_tables, nets, spell_out
 from .tables import Strict
 
 
@@ -121,6 +121,8 @@ def _place(
     inner = _unfold(file, dict(_expand(file, name, table, assembly, found)), assembly.connect, assemblies, above)
     found.problems += inner.problems
     found.parts |= {f"{name}_{part}": own for part, own in inner.parts.items()}
+    if len(found.parts) > MOST:
+        raise ScenarioError(f"{file} [assembly.{above[-1]}]: makes more than {MOST} parts. Write fewer.")
     found.connect |= {f"{name}_{net}": [f"{name}_{p}" for p in flat(ports)] for net, ports in inner.connect.items()}
     for port, target in assembly.ports.items():
         found.met[f"{name}.{port}"] = f"{name}_{inner.met.get(target, target)}"

@@ -47,6 +47,8 @@ def read_toml(path: Path) -> dict[str, Any]:
         return found
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(_syntax_problem(path.name, text, str(error))) from None
+    except ValueError:  # of Python, which reads no integer of thousands of digits
+        raise ScenarioError(f"{path.name}: a number has too many digits. Write it with an exponent.") from None
     except RecursionError:
         raise ScenarioError(f"{path.name}: its lists or tables lie too deep in each other. Write them flat.") from None
 

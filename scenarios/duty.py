@@ -27,6 +27,8 @@ from .csv_table import number, raise_all, read_cells, split_unit
 
 TIME = Quantity("time", "s", "time")
 
+#: Times nearer than this are one [s].
+APART = 1e-6
 #: A step large enough to tell the slope of a unit's conversion from its offset without rounding.
 _LARGE = 1e6
 
@@ -69,9 +71,17 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
     if len(header) == 1:
         problems.append(f"{path.name} line 1: no input beside the time. Add a column, one of: {', '.join(known)}.")
     if TIME.name in values:
+        values[TIME.name] = _with_jumps(values[TIME.name])
         problems += _time_problems(path.name, rows, values[TIME.name])
     raise_all(problems, path.name)
     return Schedule(values.pop(TIME.name), values)
+
+
+def _with_jumps(time: np.ndarray) -> np.ndarray:
+    """Times (n,), those of a jump alike that rounding has moved apart."""
+    steps = np.diff(time)
+    moved = np.where((steps > 0) & (steps < APART), steps, 0.0)
+    return np.asarray(time - np.append(0.0, np.cumsum(moved)))
 
 
 def _split_header(cell: str) -> tuple[str, str]:

@@ -13,11 +13,12 @@ from ..model.core.declare import Parameter, list_declared
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
-from .document import ABOUT, read_toml, sources_of
-from .shipped import CHECKED, FILES, FOLDER
+from .document import ABOUT, sources_of
+from .shipped import CHECKED, FILES, FOLDER, SERIES, read_entries
 
 #: Keys that describe an entry to a reader, and that no part takes, with their SI unit.
 DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {
+    "bearing": {"C": "N"},
     "material": {"rho": "kg/m3", "k": "W/(m.K)"},
     "air": {"k": "W/(m.K)", "nu": "m2/s", "Pr": "1"},
 }
@@ -81,13 +82,13 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     units |= DESCRIPTIVE.get(kind, {})
     entries: dict[str, Entry] = {}
     problems = Problems()
-    for name, table in read_toml(path).items():
+    for name, table in read_entries(path).items():
         where = f"{path.name} [{name}]"
         if not isinstance(table, Mapping):
             problems.append(f"{where}: is no table. Write the values of the entry below [{name}].")
             continue
-        values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED)}
-        sources, wrong = sources_of(where, {key: value for key, value in table.items() if key != CHECKED})
+        values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED, SERIES)}
+        sources, wrong = sources_of(where, {key: value for key, value in table.items() if key not in (CHECKED, SERIES)})
         problems += wrong
         checked, wrong = _read_checks(where, table.get(CHECKED), values)
         problems += wrong

@@ -15,11 +15,12 @@ shaft = ["input.flange", "input_bearing_{a,b}.shaft"]                       # al
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
 
-from ..model.errors import suggestion
+from ..model.errors import ScenarioError, suggestion
 from .document import ABOUT
 from .shipped import FILES
 from .values import UNCERTAINTIES
@@ -27,24 +28,46 @@ from .values import UNCERTAINTIES
 #: Keys of a part's table that hold tables: a part adds to those of its template.
 ADDED = ("sources", UNCERTAINTIES)
 
+#: Most names that one stands for, and most parts of a rig.
+MOST = 10_000
+#: Longest range of numbers [characters].
+LONGEST = 30
 _BRACES = re.compile(r"\{([^{}]*)\}")
 _RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*")
 
 
 def options(text: str) -> list[str]:
-    """What the first braces of a text stand for: "a,b" is two words, "1..3" three numbers; none without braces."""
+    """What the first braces of a text stand for: "a,b" is two words, "1..3" three numbers; none without braces.
+
+    Args:
+        text: with or without braces
+
+    Raises:
+        ScenarioError: they stand for too many
+    """
     match = _BRACES.search(text)
     if match is None:
         return []
     if ends := _RANGE.fullmatch(match[1]):
+        if len(match[1]) > LONGEST or int(ends[2]) - int(ends[1]) >= MOST:
+            raise ScenarioError(f'"{text[:60]}" stands for more than {MOST} names. Write fewer.')
         return [str(k) for k in range(int(ends[1]), int(ends[2]) + 1)]
     return [word.strip() for word in match[1].split(",")]
 
 
 def spell_out(text: str) -> list[str]:
-    """All that a text stands for, with any number of braces: "a_{1,2}" is "a_1" and "a_2"."""
+    """All that a text stands for, with any number of braces: "a_{1,2}" is "a_1" and "a_2".
+
+    Args:
+        text: with or without braces
+
+    Raises:
+        ScenarioError: they stand for too many
+    """
     if not (found := options(text)):
         return [text]
+    if math.prod(len(options(braces[0])) for braces in _BRACES.finditer(text)) > MOST:
+        raise ScenarioError(f'"{text[:60]}" stands for more than {MOST} names. Write fewer.')
     return [whole for word in found for whole in spell_out(_BRACES.sub(word, text, count=1))]
 
 
@@ -126,6 +149,7 @@ def nets(written: str, ports: Any) -> list[tuple[str, Any]]:
         written: name of the net
         ports: that meet
     """
+    spell_out(written)  # refuses too many
     if not (own := options(written)):
         return [(written, flat(ports))]
     found = []

@@ -33,6 +33,9 @@ FILES: Mapping[str, str] = {
 #: Key of what the values of an entry were compared with.
 CHECKED = "checked"
 
+#: Key of the series that an entry is a size of.
+SERIES = "series"
+
 
 def list_rigs(key: str = "doc") -> dict[str, str]:
     """The shipped rigs by name: what they are, or for "reproduces" the published results that they reproduce."""
@@ -52,19 +55,38 @@ def _rigs() -> Mapping[str, Mapping[str, Any]]:
 class Listed:
     """An entry of a catalogue as it is listed: what it is, and whether its values were compared with a print.
 
-    `checked` is "all", "none", or names the values that were not.
+    `checked` is "all", "none", or names the values that were not; `series` is "" for an entry by itself.
     """
 
     doc: str
     checked: str
+    series: str = ""
+
+
+def read_entries(path: Path) -> dict[str, Any]:
+    """The tables of a catalogue file by entry; one with `sizes` is a series of entries that share the rest.
+
+    Its `columns` name what a size has, with its unit; "1" stands for none.
+    """
+    found: dict[str, Any] = {}
+    for name, table in read_toml(path).items():
+        if not isinstance(table, Mapping) or "sizes" not in table:
+            found[name] = table
+            continue
+        shared = {key: value for key, value in table.items() if key not in ("columns", "sizes")}
+        for own, numbers in table["sizes"].items():
+            columns = zip(table["columns"].items(), numbers, strict=True)
+            sizes = {key: n if unit == "1" else f"{n:g} {unit}" for (key, unit), n in columns}
+            found[own] = {SERIES: name} | sizes | shared
+    return found
 
 
 def list_entries(kind: str) -> dict[str, Listed]:
     """The entries of a catalogue by name; its kind is a key of `FILES`."""
     found = {}
-    for name, table in read_toml(FOLDER / FILES[kind]).items():
-        values, checked = [key for key in table if key not in (*ABOUT, CHECKED)], table[CHECKED]
+    for name, table in read_entries(FOLDER / FILES[kind]).items():
+        values, checked = [key for key in table if key not in (*ABOUT, CHECKED, SERIES)], table[CHECKED]
         missing = [] if isinstance(checked, str) else [key for key in values if not checked or key not in checked]
         told = "all" if not missing else f"not {', '.join(missing)}" if checked else "none"
-        found[name] = Listed(str(table.get("doc", "")), told)
+        found[name] = Listed(str(table.get("doc", "")), told, table.get(SERIES, ""))
     return found

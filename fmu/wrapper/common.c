@@ -20,7 +20,8 @@ static void start(Instance *m)
     m->log_mask = m->log_mask_at_start;
     memset(m->warned, 0, sizeof m->warned);
     memset(m->kept, 0, sizeof m->kept);
-    m->refused_step = NAN;
+    memset(m->s.wrong, 0, sizeof m->s.wrong);
+    m->s.refused_step = NAN;
     m->order_told = 0;
     m->outputs_wanted = 1;
 }
@@ -126,6 +127,8 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
     int r;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
+    for (r = 0; r < NU; r++)
+        if (m->s.wrong[r]) return refuse_value(m, "fmi2ExitInitializationMode", FIRST_U + r, m->s.asked[r]), fmi2Error;
     before = m->s;
     status = begin(m);
     if ((block = unsolved(m)) != NULL)
@@ -206,7 +209,8 @@ static int settable(fmi2ValueReference r)
 
 /* Masters fill inputs with zeros before they have values to pass on: some while they initialize, some until their first
    exchange of values. Such an input keeps its last valid value; the call succeeds, because masters take even a warning
-   for a failure. From then on every value counts. */
+   for a failure. From then on every value counts. Another value out of range is refused when initialization is left,
+   unless a valid one has followed. */
 static int stays(const Instance *m, fmi2ValueReference r, double value)
 {
     int input = r >= FIRST_U && r < FIRST_Y;
@@ -240,9 +244,16 @@ static int takes(const Instance *m, fmi2ValueReference r, double value, const ch
 static void put(Instance *m, fmi2ValueReference r, double value)
 {
     double *place = stored(m, r);
+    int input = r >= FIRST_U && r < FIRST_Y;
+    if (input) m->s.wrong[r - FIRST_U] = 0;
     if (*place == value) return;
-    if (stays(m, r, value)) {
+    if (stays(m, r, value) && value == 0.0) {
         tell_kept(m, r, value);
+        return;
+    }
+    if (stays(m, r, value)) {
+        m->s.wrong[r - FIRST_U] = 1;
+        m->s.asked[r - FIRST_U] = value;
         return;
     }
     if (fabs(value - *place) > 1e-6 * (fabs(*place) + model_nominal[r]) || r >= FIRST_P)

@@ -23,14 +23,14 @@ static uint64_t beginning(const State *s)
 
 static int refused_before(const Instance *m, double step)
 {
-    return step == m->refused_step && beginning(&m->s) == m->refused_from;
+    return step == m->s.refused_step && beginning(&m->s) == m->s.refused_from;
 }
 
 static void remember_refusal(Instance *m, double step, const char *reason)
 {
     m->s.mode = STEP_FAILED;
-    m->refused_from = beginning(&m->s);
-    m->refused_step = step;
+    m->s.refused_from = beginning(&m->s);
+    m->s.refused_step = step;
     m->refused_by = reason;
 }
 
@@ -77,7 +77,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (!check_relations(m, "fmi2DoStep")) return fmi2Error;
     if (refused_before(m, step))
         return refuse(m, "fmi2DoStep: the step of %g s from %.10g s was refused because of %s, and nothing has changed "
-                      "since. Take a shorter step, or other inputs.", step, time, m->refused_by);
+                      "since. Take a shorter step, or other inputs.", step, time,
+                      m->refused_by ? m->refused_by : "what another instance has told");
     if ((r = input_astray(m, step)) != N_VARIABLES) {
         remember_refusal(m, step, model_names[r]);
         return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s%s). "

@@ -48,6 +48,10 @@ typedef struct {
     int jumped;            /* an input or a parameter has jumped since the last step */
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
     int stepped;           /* a communication step has been done */
+    double refused_step;   /* length of the last step that was refused, NAN when there is none, */
+    uint64_t refused_from; /* and where it began, as a hash */
+    int wrong[AT_LEAST_1(NU)];      /* an input was last given a value out of its range, before the run */
+    double asked[AT_LEAST_1(NU)];   /* that value */
     double time;
     double stop;
     double tolerance;
@@ -87,9 +91,7 @@ typedef struct {
     unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
     int order_told;        /* that higher derivatives of inputs are ignored */
     int outputs_wanted;    /* outputs or derivatives have been read since the last step */
-    double refused_step;   /* length of the last step that was refused, NAN when there is none; */
-    uint64_t refused_from; /* where it began, as a hash; */
-    const char *refused_by;   /* and the name of what ended it */
+    const char *refused_by;   /* name of what ended the last step that was refused */
 } Instance;
 
 /* Log categories, in the order of the model description. */

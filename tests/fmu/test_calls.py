@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as ca
 import pytest
-from fmpy.fmi2 import FMU2Model, fmi2LastSuccessfulTime, fmi2Terminated
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2LastSuccessfulTime, fmi2Terminated
 from gearheat.fmu.export import export
 
 DISCARD, ERROR = 2, 3
@@ -86,7 +86,24 @@ def test_values_out_of_range_are_refused_by_name(opened: Open, heat_fmu: Path) -
     assert "room.T = 0 K is out of range. It must be above 0 K." in one.refused(lambda: one.set(room__T=0.0))[1]
 
 
-@pytest.mark.parametrize("value", [0.0, -5.0, math.nan, math.inf])
+@pytest.mark.parametrize("kind", [FMU2Slave, FMU2Model])
+@pytest.mark.parametrize("value", [-5.0, math.nan, math.inf, -1e-300])
+def test_a_start_value_out_of_range_is_refused_when_initialization_is_left(
+    opened: Open, heat_fmu: Path, kind: type, value: float
+) -> None:
+    one = opened(heat_fmu, kind)
+    one.set(room__T=value)
+    status, told = one.refused(one.start)
+    assert status == ERROR
+    assert "room.T = " in told
+    assert ("is out of range. It must be above 0 K" if math.isfinite(value) else "is not finite") in told
+    other = opened(heat_fmu, kind)
+    other.set(room__T=value)
+    other.start(room__T=280.0)  # a valid one has followed
+    assert other.get("room.T") == [280.0]
+
+
+@pytest.mark.parametrize("value", [0.0])
 def test_an_input_keeps_its_value_while_a_master_initializes(opened: Open, heat_fmu: Path, value: float) -> None:
     """Masters fill inputs with zeros before they have values, and take any status but fmi2OK for a failure."""
     expected = run(opened(heat_fmu).start(room__T=280.0), 3)
@@ -124,6 +141,17 @@ def test_a_slope_that_leads_an_input_out_of_its_range_is_refused(opened: Open, h
     assert (status, "leads room.T out of its range (above 0 K)" in text) == (DISCARD, True)
     assert one.refused(lambda: one.fmu.doStep(200, 100))[0] == ERROR
     assert one.everything() == before
+    one.fmu.doStep(200, 50)
+
+
+def test_a_refused_step_that_is_repeated_from_a_state_set_back_is_discarded_again(opened: Open, heat_fmu: Path) -> None:
+    one = opened(heat_fmu).start()
+    one.fmu.setRealInputDerivatives([one.refs["room.T"]], [1], [-1.0])
+    one.fmu.doStep(0, 200)
+    saved = one.fmu.getFMUstate()
+    for _ in range(2):
+        assert one.refused(lambda: one.fmu.doStep(200, 100))[0] == DISCARD
+        one.fmu.setFMUstate(saved)
     one.fmu.doStep(200, 50)
 
 

@@ -23,7 +23,8 @@ from ..show.console import writable, write
 from ..solve.settings import flat_of
 from ..solve.steady import conditions
 from . import sizing
-from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
+from .bearings import LIFE, LIGHT
+from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, WormStage
 
 #: Density of steel [kg/m3].
@@ -32,6 +33,14 @@ STEEL = 7850.0
 IRON = 7200.0
 #: Density of oil at which churning is stated [kg/m3].
 OIL = 835.0
+#: Diameter of a fan over the smaller side of the housing [1].
+SWEEP = 0.8
+#: Air along the walls over the speed of the fan's tips [1].
+AIR = 0.12
+#: Power of a fan over rho n3 D5 [1].
+FAN = 3.0
+#: How much warmer the oil is than the water or air of its cooler [K].
+COOLED = 50.0
 #: Iron of ribs and flanges over that of the walls [1].
 RIBBED = 0.25
 #: Height of a rib over its thickness [1].
@@ -81,6 +90,9 @@ def new(
     power: str,
     speed: str,
     oil: str = "ISO VG 220 mineral",
+    bearings: str = "auto",
+    fan: bool = False,
+    cooler: bool = False,
     base: str = "concrete",
     out: str | Path | None = None,
 ) -> NewRig:
@@ -93,6 +105,9 @@ def new(
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"
         oil: entry of the catalogue
+        bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
+        fan: on the input shaft
+        cooler: of the oil, for the losses at the name plate
         base: what its foot stands on, "concrete" or a "steel" frame; "free" on rubber, or where it hangs on its shaft
         out: file to write; none is left if None
 
@@ -107,7 +122,7 @@ def new(
     """
     words = stages.split(",") if isinstance(stages, str) else stages
     kinds = [kind.strip() for kind in words if kind.strip()]
-    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"))
+    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"), bearings)
     entry = _oil(oil)
     if base not in BASES:
         raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
@@ -119,7 +134,7 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry, base))
+        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler))
         try:
             scenario = read_rig(path)
             flat = flat_of(scenario)
@@ -149,12 +164,12 @@ def new(
 def _notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
     """What a user should know about a unit."""
     if sizes["oil_degC"] > HOT:
-        yield f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing."
+        yield f"the oil is hotter than {HOT:g} degC: such a unit needs --fan or --cooler, fins, or a larger housing."
     if sizes["efficiency"] < POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
-            if life < sizing.LIFE:
+            if life < LIFE:
                 yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
 
 
@@ -168,7 +183,7 @@ def _oil(name: str) -> str:
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, base: str) -> str:
+def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, cooler: bool) -> str:
     """The rig file of a unit.
 
     Args:
@@ -177,6 +192,8 @@ def text(made: Unit, doc: str, speed: str, oil: str, base: str) -> str:
         speed: of the input, as it is written
         oil: entry of the catalogue
         base: one of `BASES`
+        fan: whether one is on the input shaft
+        cooler: whether the oil has one
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
@@ -198,7 +215,10 @@ def text(made: Unit, doc: str, speed: str, oil: str, base: str) -> str:
         "own_load": 0.0 if made.shafts[0].places else LIGHT,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
-        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
+        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
+        "fan": _fan(made) if fan else None,
+        "cooled": COOLED,
+        "cooler": _cooler(made, efficiency) if cooler else None,
         "foot": _foot(made, base),
         **_bodies(made),
     }
@@ -257,6 +277,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "bearing": bearing,
             "life": _num(life),
             "dips": sizing.stands_in_oil(made, bearing),
+            "use": f"{s.kind}_bearing",
         }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
@@ -268,9 +289,21 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "gears": gears,
         "span": s.span,
         "bearings": places,
+        "kind": s.kind,
         "d": s.d,
         "d_torsion": s.d_torsion,
     }
+
+
+def _fan(made: Unit) -> dict[str, float]:
+    """A fan as wide as a cowl on the smaller side of the housing holds: air along the walls, and its torque."""
+    D = SWEEP * min(made.width, made.height)
+    return {"D": D, "k_v": AIR * D / 2, "k": FAN * 1.2 * D**5 / (2 * math.pi) ** 3, "share": AIR}
+
+
+def _cooler(made: Unit, efficiency: float) -> float:
+    """Conductance of a cooler that takes all that is lost at the name plate [W/K]."""
+    return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
 
 
 def _foot(made: Unit, base: str) -> dict[str, Any] | None:

@@ -13,17 +13,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...model.errors import ScenarioError
-from ...model.files import tables
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
+from .bearings import CHOICES, UNLOADED, choose, largest_bore
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Shear stress of shafts [Pa].
 SHEAR = 25e6
-#: Wanted life of bearings [h].
-LIFE = 20_000.0
-#: Least load of a bearing [N].
-LIGHT = 100.0
+#: How much whole numbers of teeth may add to a ratio [1].
+ROUNDED = 1.05
 #: Kinds of stages that stand alone.
 ALONE = ("worm", "planetary")
 #: From the middle of a bearing to a gear [m].
@@ -34,8 +32,6 @@ GAP = 0.010
 OVERHANG = 2.5
 #: Distance of the bearings of a worm over its wheel's diameter [1].
 APART = 0.9
-#: Basic dynamic load ratings of the bearings to choose from [N].
-RATINGS: dict[str, float] = tables("tools.build", "ratings.toml")
 #: How deep the smallest wheel dips, in modules.
 DIP = 3.0
 #: Share of what is below the level that is oil [1].
@@ -52,18 +48,20 @@ ALONG = 0.5
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft: torque, speed [1/s], diameter of its larger seat and that by torsion, places of its gears and bearing b,
-    both bearings with their lives [h].
+    """A shaft: torque, speed [1/s], diameters of its larger and smaller seat and that by torsion, places of its gears
+    and bearing b, both bearings, which are of one kind, with their lives [h].
     """
 
     T: float
     n: float
     d: float
+    d_seal: float
     d_torsion: float
     places: tuple[float, ...]
     span: float
     bearings: tuple[str, str]
     lives: tuple[float, float]
+    kind: str
 
 
 @dataclass(frozen=True)
@@ -93,7 +91,7 @@ class Unit:
         return 2 * (self.length * self.width + self.length * self.height + self.width * self.height)
 
 
-def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit:
+def unit(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str = "auto") -> Unit:
     """A gear unit for a name plate.
 
     Args:
@@ -101,11 +99,12 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
         ratio: speed of the input over that of the output
         power: at the input [W]
         speed: of the input [rad/s]
+        bearings: "ball", "roller", or "auto" for rollers where balls do not last
 
     Raises:
         ScenarioError: unknown kinds, or more than so many stages of so much can do
     """
-    _check(kinds, ratio, power, speed)
+    _check(kinds, ratio, power, speed, bearings)
     T, n, x = power / speed, speed / (2 * math.pi), SIDE
     found: list[Stage] = []
     left = ratio
@@ -114,7 +113,7 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
         found.append(made)
         T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
     span = x - GAP + SIDE
-    shafts = tuple(_shaft(found, k, span) for k in range(len(found) + 1))
+    shafts = tuple(_shaft(found, k, span, bearings) for k in range(len(found) + 1))
     wall = max(0.008, 0.025 * found[-1].along + 0.003)
     tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
     length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
@@ -128,7 +127,7 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
     return Unit(tuple(found), shafts, wall, length, span + 0.090, height)
 
 
-def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> None:
+def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> None:
     problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
@@ -149,6 +148,21 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> No
             f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
             f" to {most:.3g}. Give {needed} stages or more."
         )
+    if bearings not in CHOICES:
+        raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
+    choices = UNLOADED if "planetary" in kinds else CHOICES
+    d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0) if speed > 0 else 0.0
+    if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
+        needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
+        ways = [f"{most / T * power / 1000:.4g} kW or less", f"{speed * T / most * 30 / math.pi:.4g} rpm or more"]
+        if most > power / speed:
+            ways.insert(1, f"a ratio of {most / T * ratio:.3g} or less")
+        if bearings == "ball" and needed <= largest_bore(choices["roller"]) / ROUNDED:
+            ways.append("--bearings roller")
+        problems.append(
+            f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
+            f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}."
+        )
     if problems:
         raise ScenarioError(problems)
 
@@ -160,7 +174,7 @@ def _share(ratio: float, kinds: Sequence[str]) -> float:
     return float(min(max(share, ratio / math.prod(MOST[kind] for kind in kinds[1:]), 1.0), ratio, MOST[kinds[0]]))
 
 
-def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
+def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft:
     """The shaft behind k stages: its diameter by torsion, its bearings by bore and life."""
     before, behind = stages[k - 1 : k] if k else (), stages[k : k + 1]
     T = behind[0].T if behind else before[0].T * before[0].u
@@ -180,23 +194,10 @@ def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
     planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
     far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]
     near = [sum(p[i] for p in planes) - far[i] for i in (0, 1)]
-    chosen = [_bearing(d, math.hypot(*F), F_a, n) for F, F_a in ((near, axial), (far, 0.0))]
-    bore = max(si_of(catalogue("bearing")[name].values["d"]) for name, _ in chosen)
-    (a, life_a), (b, life_b) = chosen
-    return Shaft(T, n, bore, d, tuple(x for _, x, _ in gears), span, (a, b), (life_a, life_b))
-
-
-def _bearing(d: float, F_r: float, F_a: float, n: float) -> tuple[str, float]:
-    """The smallest bearing of the catalogue with a bore and the wanted life, else the strongest; and its life [h]."""
-    P = max(F_r, 0.56 * F_r + 1.6 * F_a, LIGHT)
-    sizes = {name: [si_of(catalogue("bearing")[name].values[key]) for key in ("D", "d")] for name in RATINGS}
-    fitting = [name for name in RATINGS if sizes[name][1] >= 0.999 * d]
-    if not fitting:
-        raise ScenarioError(f"a shaft of {1000 * d:.0f} mm: no ball bearing of the catalogue has such a bore.")
-    lives = {name: 1e6 / (3600 * n) * (RATINGS[name] / P) ** 3 for name in fitting}
-    lasting = [name for name in fitting if lives[name] >= LIFE]
-    name = min(lasting, key=sizes.__getitem__) if lasting else max(fitting, key=lives.__getitem__)
-    return name, lives[name]
+    kinds = (CHOICES if gears else UNLOADED)[bearings]
+    kind, ((a, life_a), (b, life_b)) = choose(d, [math.hypot(*F) for F in (near, far)], axial, n, kinds)
+    places = tuple(x for _, x, _ in gears)
+    return Shaft(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (life_a, life_b), kind)
 
 
 def wheels_dip(made: Unit) -> bool:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ...model.errors import ScenarioError
 from ...model.laws.worm import worm_base_friction, worm_mean_friction, worm_size_factor
 from ...model.parts.gears import HelicalGearPair, InternalGearPair
 
@@ -42,9 +41,9 @@ SUNS = range(18, 61)
 #: Least number of teeth of a planet.
 LEAST_PLANET = 24
 #: Standard modules and centre distances (preferred numbers R 20) [mm].
-MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
+MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0)
 R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
-CENTRES = tuple(m * 10**k for k in (1, 2) for m in R_20)
+CENTRES = tuple(m * 10**k for k in (1, 2, 3) for m in R_20)
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 #: Efficiency of a stage with its bearings, for the load at the output [1].
@@ -260,9 +259,7 @@ def _cylindrical(kind: str, u: float, T: float, n: float, x: float) -> Stage:
     """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
     d_1 = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3)
     wanted = 1000 * d_1 * (1 + u) / 2
-    a = min((c for c in CENTRES if c >= SHORT * wanted), default=0.0) / 1000
-    if not a:
-        raise ScenarioError(f"a stage for {T:g} N.m at its pinion needs {wanted:.0f} mm between its shafts, too much.")
+    a = min(c for c in CENTRES if c >= SHORT * wanted) / 1000
     d_1 = 2 * a / (1 + u)
     aim = KINDS[kind]
     m_n = max((m for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH), default=MODULES[0]) / 1000
@@ -296,9 +293,7 @@ def _worm(kind: str, u: float, T: float, n: float, x: float) -> WormStage:
     z_1 = next(z for most, z in STARTS.items() if u <= most + 1e-9)
     z_2 = round(u * z_1)
     wanted = 1000 * (T * u / T_WORM) ** (1 / 3)
-    a = min((c for c in CENTRES if c >= SHORT * wanted), default=0.0) / 1000
-    if not a:
-        raise ScenarioError(f"a worm of {T:g} N.m needs {wanted:.0f} mm between its shafts, too much.")
+    a = min(c for c in CENTRES if c >= SHORT * wanted) / 1000
     m_x = round(2e4 * (2 - SLIM) * a / z_2) / 2e4  # in steps of 0.05 mm
     d_1 = 2 * a - m_x * z_2
     b = round(750 * d_1) / 1000
@@ -316,9 +311,7 @@ def _planetary(kind: str, u: float, T: float, n: float, x: float) -> PlanetarySt
     d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
     sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
     z_1, z_3 = min(sizes, key=lambda size: (round(abs(1 + size[1] / size[0] - u) / u, 2), size[0]))
-    m_n = next((m for m in MODULES if m * z_1 >= 1000 * d_1), 0.0) / 1000
-    if not m_n:
-        raise ScenarioError(f"a sun of {T:g} N.m needs teeth of more than {MODULES[-1]:g} mm, too much.")
+    m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
     b = round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)) / 1000
     return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, x + b / 2, z_3)
 

@@ -5,12 +5,18 @@ from __future__ import annotations
 import errno
 import os
 import sys
+from contextlib import suppress
 
 
 def main() -> None:
     """Entry point of the program."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by who has started the program
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
+        with suppress(AttributeError):
+            getattr(sys, name).reconfigure(errors="backslashreplace")
     try:
-        from .ending import ending_well
+        from ..show.ending import ending_well
 
         with ending_well():
             try:

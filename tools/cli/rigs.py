@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,17 @@ def new(
     power: str,
     speed: str,
     oil: str = "ISO VG 220 mineral",
+    bearings: str = "auto",
+    fan: bool = False,
+    cooler: bool = False,
     base: str = "concrete",
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     path = out or Path(f"{name}.toml")
-    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, oil=oil, base=base, out=path)
+    chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
+    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, out=path, **chosen)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
         console.note(note)
@@ -85,7 +90,13 @@ def _print_new(found: Mapping[str, Any]) -> None:
 def _print_shipped(held: gh.Shipped) -> None:
     console.table(held.title, *held.table())
     for kind, entries in held.catalogues.items():
-        rows = [(name, e.doc, e.checked) for name, e in entries.items()]
+        rows = []
+        alike_by = groupby(entries.items(), key=lambda e: (e[1].doc, e[1].checked, e[1].series))
+        for (doc, checked, series), alike in alike_by:
+            names = [name for name, _ in alike]
+            if series:
+                names = [f"{names[0]} ... {names[-1]} ({len(names)} sizes)"]
+            rows += [(name, doc, checked) for name in names]
         console.table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
 

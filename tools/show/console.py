@@ -59,6 +59,9 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
         except KeyboardInterrupt:
             note("interrupted")
             sys.exit(INTERRUPTED)
+        except MemoryError:
+            note("error: there is not enough memory. Ask for less at once, or give more.")
+            sys.exit(BAD_INPUT)
         except BrokenPipeError:  # the reader of stdout, a pager for example, has gone
             _silence()
         except OSError as error:
