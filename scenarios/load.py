@@ -89,7 +89,8 @@ def _find(name_or_path: str | Path) -> Path:
         if path.is_file() or path.suffix == ".toml":
             return path
     names = list_rigs()
-    close = suggestion(str(name_or_path), names)
+    beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
+    close = suggestion(str(name_or_path), [*names, *beside])
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
 
 

@@ -303,6 +303,13 @@ def test_whatever_stands_in_a_rig_file_is_accepted_or_explained(data: st.DataObj
             assert all(problem.strip() for problem in error.problems)
 
 
+def test_the_file_beside_is_suggested(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "gearbox_7.toml").write_text("")
+    with pytest.raises(GearheatError, match=r'Did you mean "gearbox_7\.toml"'):
+        load("gearbox_7.tml")
+
+
 @pytest.mark.parametrize(
     ("name", "expected"),
     [

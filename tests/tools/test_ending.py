@@ -13,7 +13,7 @@ from contextlib import nullcontext
 import pytest
 from gearheat.model import files
 from gearheat.model.files import DAY, replacing
-from gearheat.tools.cli import ending
+from gearheat.tools.show import ending
 
 #: From Ctrl-C to the end [s].
 LIMIT = 2.0
@@ -28,7 +28,7 @@ KEEPING = {
 }
 SCRIPT = """
 import hashlib, threading, time
-from gearheat.tools.cli.ending import ending_well
+from gearheat.tools.show.ending import ending_well
 from gearheat.model.files import replacing
 from pathlib import Path
 import tempfile

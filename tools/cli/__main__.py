@@ -16,7 +16,7 @@ def main() -> None:
         with suppress(AttributeError):
             getattr(sys, name).reconfigure(errors="backslashreplace")
     try:
-        from .ending import ending_well
+        from ..show.ending import ending_well
 
         with ending_well():
             try:
