@@ -128,7 +128,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
     for (r = 0; r < NU; r++)
-        if (m->s.wrong[r]) return refuse_value(m, "fmi2ExitInitializationMode", FIRST_U + r, m->s.asked[r]), fmi2Error;
+        if (m->s.wrong[r]) return refuse_value(m, "fmi2ExitInitializationMode", FIRST_U + r, m->asked[r]), fmi2Error;
     before = m->s;
     status = begin(m);
     if ((block = unsolved(m)) != NULL)
@@ -253,7 +253,7 @@ static void put(Instance *m, fmi2ValueReference r, double value)
     }
     if (stays(m, r, value)) {
         m->s.wrong[r - FIRST_U] = 1;
-        m->s.asked[r - FIRST_U] = value;
+        m->asked[r - FIRST_U] = value;
         return;
     }
     if (fabs(value - *place) > 1e-6 * (fabs(*place) + model_nominal[r]) || r >= FIRST_P)

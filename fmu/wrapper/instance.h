@@ -50,8 +50,7 @@ typedef struct {
     int stepped;           /* a communication step has been done */
     double refused_step;   /* length of the last step that was refused, NAN when there is none, */
     uint64_t refused_from; /* and where it began, as a hash */
-    int wrong[AT_LEAST_1(NU)];      /* an input was last given a value out of its range, before the run */
-    double asked[AT_LEAST_1(NU)];   /* that value */
+    unsigned char wrong[AT_LEAST_1(NU)];   /* an input was last given a value out of its range, before the run */
     double time;
     double stop;
     double tolerance;
@@ -89,6 +88,7 @@ typedef struct {
     double deviation[AT_LEAST_1(NSD)];
     unsigned char warned[AT_LEAST_1(NK)];
     unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
+    double asked[AT_LEAST_1(NU)];   /* the last value of an input that was out of its range, before the run */
     int order_told;        /* that higher derivatives of inputs are ignored */
     int outputs_wanted;    /* outputs or derivatives have been read since the last step */
     const char *refused_by;   /* name of what ended the last step that was refused */

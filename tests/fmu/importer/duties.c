@@ -92,6 +92,7 @@ static fmi2Component prepared(Heard *heard)
         if (below(&r, 4) == 0) {
             double value = value_for(&m.u[i]);
             MUST(m.f.SetReal(c, &m.u[i].r, 1, &value));
+            if (!(value >= m.u[i].low && value <= m.u[i].high)) set(c, &m.u[i], m.u[i].start); /* else it cannot begin */
         }
     for (i = 0; i < m.nu; i++)
         if (strcmp(m.u[i].name, "room.T") == 0 && below(&r, 2)) {
