@@ -28,7 +28,7 @@ def test_a_case_is_what_its_seed_says(kind: str, tmp_path: Path) -> None:
 
 
 def test_probes_that_err_together_are_nearer_to_their_rivals_than_one_alone(tmp_path: Path) -> None:
-    truth = machines.make(5, 3, 0, tmp_path, "single")
+    truth = machines.make(5, 3, 1, tmp_path, "single")
     machine = machines.Machine(tmp_path / "case" / "machine.toml", np.random.default_rng(0))
     oil, wall = ({}, {"T_oil": -3.0}), ({}, {"T_wall": -3.0})
     near, _ = machine.distance([oil, wall], {"sensor.oil_temp.offset", "sensor.wall_temp.offset"})

@@ -141,7 +141,7 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     flat = flat_of(scenario)
     given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
     signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
-    backward = len(given) == 2 and signs[0] * signs[1] < 0
+    backward = len(given) == 2 and bool(signs[0] * signs[1] < 0)
     return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)), backward)
 
 
