@@ -34,11 +34,11 @@ class Played:
         return self.values[:, self.names.index(name)]
 
 
-def play(path: Path | str, inputs: Inputs, stop: float, step: float, **options: Any) -> Played:
+def play(fmu: Path | str | Described, inputs: Inputs, stop: float, step: float, **options: Any) -> Played:
     """Load an FMU and run it once.
 
     Args:
-        path: the FMU
+        fmu: the file, or its description where that has been read
         inputs: name -> (times [s], values in SI)
         stop: end of the run [s]
         step: communication step [s]
@@ -47,7 +47,7 @@ def play(path: Path | str, inputs: Inputs, stop: float, step: float, **options: 
     Raises:
         FmuError: as `Player` and `Player.run`
     """
-    with Player(path) as player:
+    with Player(fmu) as player:
         return player.run(inputs, stop, step, **options)
 
 

@@ -247,13 +247,13 @@ static void put(Instance *m, fmi2ValueReference r, double value)
     int input = r >= FIRST_U && r < FIRST_Y;
     if (input) m->s.wrong[r - FIRST_U] = 0;
     if (*place == value) return;
-    if (stays(m, r, value) && value == 0.0) {
-        tell_kept(m, r, value);
-        return;
-    }
     if (stays(m, r, value)) {
-        m->s.wrong[r - FIRST_U] = 1;
-        m->asked[r - FIRST_U] = value;
+        if (value == 0.0) {
+            tell_kept(m, r, value);
+        } else {
+            m->s.wrong[r - FIRST_U] = 1;
+            m->asked[r - FIRST_U] = value;
+        }
         return;
     }
     if (fabs(value - *place) > 1e-6 * (fabs(*place) + model_nominal[r]) || r >= FIRST_P)

@@ -50,6 +50,11 @@ def load_share(g: Num, path: Num, p_et: Num, eps_beta: Num, beta_b: Num, rho_C: 
     return mean * (1 + BUTTRESS * ca.fmin(eps_beta, 1.0) * ca.fmax(0.0, 1 - end / width))
 
 
+def _load_over_speed(line_load: Num, v_sum: Num, R: Num) -> Num:
+    """Load over speed and radius as both friction formulas have it [N/mm over m/s mm]."""
+    return smooth_abs(line_load, LINE_WIDTH) / (smooth_abs(v_sum, V_WIDTH) * R) * 1e-6
+
+
 @law(
     source="ISO6336-20",
     where="mean coefficient of friction, method C: as public programs quote it; KISSsoft prints 12 % less",
@@ -69,7 +74,7 @@ def friction_flash(line_load: Num, v_sum: Num, R: Num, eta_oil: Num, Ra: Num, X_
         Ra: mean roughness of the two flanks [m]
         X_L: lubricant factor, 1 for mineral oils [1]
     """
-    load = smooth_abs(line_load, LINE_WIDTH) / (smooth_abs(v_sum, V_WIDTH) * R) * 1e-6  # N/mm over m/s mm
+    load = _load_over_speed(line_load, v_sum, R)
     return 0.060 * load**0.2 * (1e3 * eta_oil) ** -0.05 * (1e6 * Ra) ** 0.25 * X_L
 
 
@@ -88,7 +93,7 @@ def friction_integral(line_load: Num, v_sum: Num, R: Num, eta_oil: Num, Ra: Num,
         Ra: mean roughness of the two flanks [m]
         X_L: lubricant factor, 1 for mineral oils [1]
     """
-    load = smooth_abs(line_load, LINE_WIDTH) / (smooth_abs(v_sum, V_WIDTH) * R) * 1e-6  # N/mm over m/s mm
+    load = _load_over_speed(line_load, v_sum, R)
     return 0.045 * load**0.2 * (1e3 * eta_oil) ** -0.05 * 2.2 * (1e3 * Ra / R) ** 0.25 * X_L
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
-from ...model.errors import FmuError, Problems, ScenarioError, suggestion, visible
+from ...model.errors import FmuError, Problems, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
@@ -68,7 +69,7 @@ def export(
         >>> gh.export("planetary", "planetary.fmu", fmi=3)  # doctest: +SKIP
     """
     told = {"--author": author, "--license": license, "--model-version": model_version}
-    if wrong := [option for option, text in told.items() if not (visible(text) == text and text.isprintable())]:
+    if wrong := [option for option, text in told.items() if not text.isprintable()]:
         raise ScenarioError([f"{option} has characters that cannot be seen. Take them out." for option in wrong])
     scenario = scenario_of(rig)
     asked = Asked(
@@ -128,7 +129,8 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
         start = _at_room(about, first) | start
     inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
-    played = (play_fmu if ours else play_apart)(fmu, inputs, schedule.stop, dt, begin=schedule.start, start=start)
+    run = partial(play_fmu, about) if ours else partial(play_apart, fmu)
+    played = run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     before = {"schema": "gearheat.play/1", "fmu": str(fmu), "out": None, "plot": None}

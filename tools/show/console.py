@@ -23,11 +23,11 @@ from typing import Any, ParamSpec
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
+from .ending import INTERRUPTED
 
 P = ParamSpec("P")
 
 BAD_INPUT = 2
-INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
 #: Of a path that leads nowhere, or where one may not go.
