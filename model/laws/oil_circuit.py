@@ -101,9 +101,7 @@ def pump_loss_torque(dp: Num, D: Num, eta_m: Num) -> Num:
     return (1 / eta_m - 1) * D * smooth_abs(dp, P_WIDTH)
 
 
-@law(
-    source="Merritt1967", where="laminar leakage of a positive-displacement pump, by its displacement", verified=False
-)
+@law(source="Merritt1967", where="laminar leakage of a positive-displacement pump, by its displacement", verified=False)
 def pump_slip(dp: Num, D: Num, eta_oil: Num, C_s: Num) -> Num:
     r"""Volume flow rate that leaks back inside a positive-displacement pump [m3/s], with the sign of the pressure.
 

@@ -18,7 +18,13 @@ KINDS = {
     "efficiency": ("%", 100.0, "efficiency"),
 }
 #: Unit of a result -> ending of a channel's name, and of the name of a change of it.
-ENDINGS = {"degC": ("_C", "_K"), "N.m": ("_Nm", "_Nm"), "W": ("_W", "_W"), "rpm": ("_rpm", "_rpm"), "%": ("_pct", "_pct")}
+ENDINGS = {
+    "degC": ("_C", "_K"),
+    "N.m": ("_Nm", "_Nm"),
+    "W": ("_W", "_W"),
+    "rpm": ("_rpm", "_rpm"),
+    "%": ("_pct", "_pct"),
+}
 
 
 def unit(sensor: Sensor) -> str:
