@@ -101,6 +101,7 @@ class Adapter:
         parts = [part for path in paths if (part := self._rows(path, problems)) is not None]
         raise_all(problems, str(folder))
         rows = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        rows |= {name: _value(text, rows) for name, text in self.table.get("derives", {}).items()}
         order = np.lexsort([rows[name] for name in ("time", "machine") if name in rows])
         return _where(self.table.get("keep", ""), {name: column[order] for name, column in rows.items()})
 
@@ -172,18 +173,18 @@ class Adapter:
         return ([cell.replace(",", ".") for cell in row] if delimiter == ";" else row for row in rows), list(names)
 
     def _cases(self, entry: Mapping[str, Any], rows: Columns) -> Iterator[Case]:
-        """One case of an entry, or one for each value of its column `each`."""
-        for value in sorted(set(rows[entry["each"]])) if "each" in entry else [""]:
-            own = {n: c[rows[entry["each"]] == value] for n, c in rows.items()} if "each" in entry else rows
-            asked, reference = _where(entry["asked"], own), _where(entry["reference"], own)
-            reference = reference if _length(reference) else _where(entry["reference"], rows)
+        """One case of an entry, or one for all that its columns `each` hold; {0} in it is the first of these."""
+        names = entry.get("each", "").split()
+        for values in sorted(set(zip(*(rows[name].tolist() for name in names), strict=True))) if names else [()]:
+            said = {key: text.format(*values) for key, text in entry.items() if isinstance(text, str)}
+            asked, reference = _where(said["asked"], rows), _where(said["reference"], rows)
             if not _length(asked) or not _length(reference):
                 continue
-            healthy = _where(entry["siblings"], rows) if "siblings" in entry else None
+            healthy = _where(said["siblings"], rows) if "siblings" in said else None
             others = sorted(set(healthy["machine"]) - set(asked["machine"])) if healthy else []
             parts = [asked, reference, *(_where(f"machine == {str(m)!r}", healthy or {}) for m in others)]
             first, second, *rest = (self.written(part, entry) for part in parts)
-            yield Case(entry["name"].format(value), first, second, tuple(rest))
+            yield Case(said["name"], first, second, tuple(rest))
 
 
 def adapter(name: str) -> Adapter:
