@@ -36,7 +36,7 @@ ACCURACY: Mapping[str, tuple[float, float]] = _TABLES["accuracy"]
 #: SI unit of what a kind of sensor reads.
 SI: Mapping[str, str] = _TABLES["units"]
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
-KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power", "1": "efficiency"}
+KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
 NAMES: Mapping[str, tuple[str, str]] = {
     "w": ("n", "rpm"),
@@ -254,7 +254,7 @@ class _Sensors:
         if unit not in KINDS:
             self.problems.append(
                 f"{self.card.name} sensors.{instrument.name}: {instrument.reads} is in {unit}, which no kind of sensor"
-                " reads. Read a temperature, a torque, a speed, a power or an efficiency."
+                " reads. Read a temperature, a torque, a speed or a power."
             )
         return KINDS.get(unit, "")
 
