@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +75,17 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None =
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    known = load_installed_types() | PARTS | EXTRA_PARTS if types is None else types
-    return _Loader(path, read_toml(path), known).scenario()
+    if types is not None:
+        return _Loader(path, read_toml(path), types).scenario()
+    return _shipped(path) if RIGS in path.parents else _usual(path)
+
+
+def _usual(path: Path) -> Scenario:
+    return _Loader(path, read_toml(path), load_installed_types() | PARTS | EXTRA_PARTS).scenario()
+
+
+#: Shipped rigs stay as they are while a program runs.
+_shipped = cache(_usual)
 
 
 def _find(name_or_path: str | Path) -> Path:

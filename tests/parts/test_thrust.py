@@ -8,7 +8,7 @@ import pytest
 from broken_assemblies import set_against
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
-from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.load import load
 from one_part import EXAMPLES
@@ -96,5 +96,5 @@ def test_a_pair_under_a_support_that_is_arranged_otherwise_is_refused() -> None:
     output = next(part for part in spec.parts if part.name == "output_support")
     del output.values["axial_share_a"]
     with pytest.raises(StructureError, match="output_support is face-to-face and pair back-to-back") as caught:
-        flatten(assemble(spec.with_values({"output_support.arrangement": "face-to-face"})))
+        spec.with_values({"output_support.arrangement": "face-to-face"}).flat()
     assert 'Give output_support arrangement = "one locates"' in str(caught.value)
