@@ -34,8 +34,11 @@ from gearheat.model.parts.shaft import Inertia, ShaftEnd
 from lxml import etree
 from small_parts import rc
 
-#: Some of the roles of FMI-LS-REF.
-ROLES = {"model", "parameter", "document", "experiment/smoke-test", "result", "report", "meta-data", "other"}
+#: What the schema of each version of FMI-LS-REF takes: roles (of those that are used here), and elements of a file.
+REFERENCES = {
+    "1.0.0-alpha.1": ({"parameter", "document", "experiment/smoke-test", "result", "other"}, set()),
+    "1.0.0-beta.1": ({"parameter", "document", "experiment/smoke-test", "result", "meta-data", "other"}, {"Label"}),
+}
 
 
 def held(path: Path) -> dict[str, bytes]:
@@ -149,11 +152,12 @@ def test_the_manifest_lists_what_is_there(sourced: Path) -> None:
     space = "{http://fmi-standard.org/fmi-ls-manifest}"
     assert root.tag == "fmiReferences"
     assert root.get(f"{space}fmi-ls-name") == PurePosixPath(MANIFEST).parent.name == "org.fmi-standard.fmi-ls-ref"
-    assert root.get(f"{space}fmi-ls-version")
+    roles, elements = REFERENCES[root.get(f"{space}fmi-ls-version", "")]
     assert root.get(f"{space}fmi-ls-description")
     for related in root:
         assert related.tag == "Related"
-        assert related.get("role") in ROLES
+        assert related.get("role") in roles
+        assert {child.tag for child in related} <= elements
         place = PurePosixPath(MANIFEST).parent
         for step in PurePosixPath(related.get("source", "")).parts:
             place = place.parent if step == ".." else place / step
@@ -191,7 +195,6 @@ def test_sets_and_an_experiment_are_listed_with_their_roles(models: SimpleNamesp
         "References": "reference_ref.csv",
     }
     assert all(f"{FOLDER}/{source}" in content for source in listed if not source.startswith(".."))
-    assert {r.get("role") for r in listed.values()} <= ROLES
 
 
 def test_the_page_says_it_to_people(sourced: Path) -> None:

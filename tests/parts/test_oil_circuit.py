@@ -10,7 +10,7 @@ import pytest
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
-from gearheat.model.errors import GearheatError, StructureError
+from gearheat.model.errors import GearheatError, ScenarioError, StructureError
 from gearheat.model.laws.oil_circuit import carried_enthalpy, laminar_pressure, orifice_flow, stream_conductance
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.parts import PARTS
@@ -299,3 +299,8 @@ def test_smooth_at_rest_and_reversed(law, odd: bool) -> None:
     for flow in (0.0, 1e-9, 1e-5, 1e-3, 0.5, 50.0):
         assert math.isfinite(float(slope(flow)))
         assert law(-flow) == pytest.approx(-law(flow) if odd else law(flow), rel=1e-12, abs=1e-12)
+
+
+def test_a_difference_of_temperatures_is_told_in_kelvin() -> None:
+    with pytest.raises(ScenarioError, match=r"T_open - T_close is -10 K, expected at least 0\.01 K"):
+        PARTS["Thermostat"]("valve", T_open=323.15, T_close=333.15)
