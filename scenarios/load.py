@@ -75,17 +75,16 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None =
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    if types is not None:
-        return _Loader(path, read_toml(path), types).scenario()
-    return _shipped(path) if RIGS in path.parents else _usual(path)
+    known = load_installed_types() | PARTS | EXTRA_PARTS if types is None else types
+    return (_shipped if RIGS in path.parents else _loaded)(path, tuple(known.items()))
 
 
-def _usual(path: Path) -> Scenario:
-    return _Loader(path, read_toml(path), load_installed_types() | PARTS | EXTRA_PARTS).scenario()
+def _loaded(path: Path, known: tuple[tuple[str, type[Component]], ...]) -> Scenario:
+    return _Loader(path, read_toml(path), dict(known)).scenario()
 
 
 #: Shipped rigs stay as they are while a program runs.
-_shipped = cache(_usual)
+_shipped = cache(_loaded)
 
 
 def _find(name_or_path: str | Path) -> Path:
