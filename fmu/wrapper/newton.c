@@ -1,6 +1,9 @@
 /* Newton's method damped by the natural monotonicity test (Deuflhard 2004, section 3.3), several guesses and a homotopy,
    as gearheat.model.run.newton and algebra have them in Python; the numbers in capitals come from there. */
 
+/* A first correction below this, in nominals and values, is round-off: what is solved stays solved bit by bit. */
+#define SAME 1e-14
+
 /* LU of a matrix by columns with row exchanges, in place; 0 where it is singular or not finite. */
 static int lu_factor(double *a, int *pivot, int n)
 {
@@ -81,7 +84,8 @@ static int implicit_newton(const Implicit *at, double *z, int most)
     if (!implicit_correction(at, z, &now)) return 0;
     for (step = 0; step < most; step++) {
         if (now.length <= CONVERGED) {
-            for (i = 0; i < NZ && step > 0; i++) z[i] += now.d[i];   /* what had converged before stays bit by bit */
+            for (i = 0; i < NZ; i++)
+                if (step > 0 || fabs(now.d[i]) > SAME * (model_z_nominal[i] + fabs(z[i]))) z[i] += now.d[i];
             return 1;
         }
         for (;;) {

@@ -10,7 +10,7 @@ import pytest
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
-from gearheat.model.errors import GearheatError, StructureError
+from gearheat.model.errors import GearheatError, ScenarioError, StructureError
 from gearheat.model.laws.oil_circuit import carried_enthalpy, laminar_pressure, orifice_flow, stream_conductance
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.parts import PARTS
@@ -263,12 +263,12 @@ def test_oil_that_finds_no_way_back_is_refused(scenario: Scenario) -> None:
     """Two tanks in the air with a return of their own, but nothing that moves the oil through it."""
     spec = scenario.spec.with_values({"upper.runs_over": False})
     with pytest.raises(StructureError, match=r"(?s)nothing says what flows on either way.*runs_over = true"):
-        flatten(assemble(spec))
+        spec.flat()
     spec = replace(spec, connections=tuple(tuple(p for p in net if p != "upper.outlet") for net in spec.connections))
     hose = PartSpec("hose", "OilNozzle", {"d": 5e-3, "C_d": 0.7})
     nets = (("upper.outlet", "hose.a"), ("hose.b", "tank.inlet"), ("hose.lubricant", "tank.lubricant"))
     with pytest.raises(GearheatError, match=r"its oil would change by .*runs_over = true"):
-        simulate(flatten(assemble(spec.with_parts((hose,), nets))), join_phases([(1.0, scenario.operating_point)]))
+        simulate(spec.with_parts((hose,), nets).flat(), join_phases([(1.0, scenario.operating_point)]))
 
 
 def test_a_circuit_without_a_sump_has_no_pressure() -> None:
@@ -299,3 +299,8 @@ def test_smooth_at_rest_and_reversed(law, odd: bool) -> None:
     for flow in (0.0, 1e-9, 1e-5, 1e-3, 0.5, 50.0):
         assert math.isfinite(float(slope(flow)))
         assert law(-flow) == pytest.approx(-law(flow) if odd else law(flow), rel=1e-12, abs=1e-12)
+
+
+def test_a_difference_of_temperatures_is_told_in_kelvin() -> None:
+    with pytest.raises(ScenarioError, match=r"T_open - T_close is -10 K, expected at least 0\.01 K"):
+        PARTS["Thermostat"]("valve", T_open=323.15, T_close=333.15)
