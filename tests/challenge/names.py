@@ -180,7 +180,7 @@ def score(c: Campaign, found: Mapping[str, Any]) -> dict[str, Any]:
         c: the campaign
         found: the diagnosis as JSON has it
     """
-    answers = [(a["probability"], sorted({name for names in a["causes"] for name in names[:1]})) for a in found["answers"]]
+    answers = [(a["probability"], sorted({names[0] for names in a["causes"]})) for a in found["answers"]]
     kept, total = [], 0.0
     for probability, names in answers:
         kept.append(names)
@@ -241,8 +241,8 @@ def names(
     with ProcessPoolExecutor(jobs) as pool:
         for result in pool.map(run, todo):
             results.append(result)
-            shown = ", ".join(f"{' + '.join(a['causes']) or 'nothing'} {a['probability']:.2f}" for a in result["answers"])
-            console.note(f"{len(results)}/{len(todo)} {result['name']}: {result['verdict']}: {shown}")
+            shown = [f"{' + '.join(a['causes']) or 'nothing'} {a['probability']:.2f}" for a in result["answers"]]
+            console.note(f"{len(results)}/{len(todo)} {result['name']}: {result['verdict']}: {', '.join(shown)}")
     stored = json.loads(json.dumps({"seed": seed, "results": results}, default=float))
     if not only:
         out.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")

@@ -23,11 +23,11 @@ def rivals(asked: Columns, reference: Columns, channel: str, given: Sequence[str
         given: columns from which; the last one is the room
     """
     healthy, now = (_complete(part, (channel, *given)) for part in (reference, asked))
-    node = _one_node(healthy, now)
+    alarm = _differs(_left(healthy, healthy), _left(healthy, now))
     return {
-        "one node, conductance": node,
-        "normal behaviour, lag": _lagged(healthy, now),
-        "regression per stage": {"alarm": _differs(_left(healthy, healthy), _left(healthy, now)), "rmse": _held_out(now)},
+        "one node": _one_node(healthy, now),
+        "normal behaviour": _lagged(healthy, now),
+        "regression": {"alarm": alarm, "rmse": _held_out(now)},
     }
 
 
