@@ -235,7 +235,7 @@ def _chain(ahead: Sequence[str], file: IO[str]) -> Iterator[str]:
 
 def _open(path: Path) -> IO[str]:
     opened = gzip.open if reading(path).suffix == ".gz" else open
-    return opened(path, "rt", encoding="utf-8-sig", newline="")  # type: ignore[return-value]
+    return opened(path, "rt", encoding="utf-8-sig", newline="")
 
 
 def _column(name: str, cells: Sequence[str], file: str, problems: Problems) -> np.ndarray:

@@ -130,10 +130,11 @@ def drawn(place: Path) -> Iterator[Campaign]:
     for folder in practice.folders(place):
         paths, key = practice.files(folder), json.loads((folder / "key.json").read_text(encoding="utf-8"))
         truth = tuple(key["truth"]) if key["kind"] != "unknown" else ("model.unexplained",)
-        tables = [_columns(paths[what]) for what in ("data", "reference")]
+        asked, reference = (_columns(paths[what]) for what in ("data", "reference"))
         given = ("n_carrier_rpm", "T_carrier_Nm", "T_amb_C")
         card = {"card": paths["card"].read_text(encoding="utf-8"), "quick": True}
-        yield Campaign(folder.name, "planetary, drawn", truth, *tables, "T_oil_C", given, "planetary", card)
+        name, rig = "planetary, drawn", "planetary"
+        yield Campaign(folder.name, name, truth, asked, reference, "T_oil_C", given, rig, card)
 
 
 def _columns(path: Path) -> Columns:

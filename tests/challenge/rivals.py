@@ -34,7 +34,7 @@ def rivals(asked: Columns, reference: Columns, channel: str, given: Sequence[str
 def _complete(part: Columns, names: Sequence[str]) -> np.ndarray:
     """Rows without holes (n, 1 + given): the channel first."""
     table = np.array([part[name] for name in names], dtype=float).T
-    return table[np.isfinite(table).all(axis=1)]
+    return np.asarray(table[np.isfinite(table).all(axis=1)])
 
 
 def _design(table: np.ndarray) -> np.ndarray:
@@ -43,7 +43,8 @@ def _design(table: np.ndarray) -> np.ndarray:
 
 def _left(fitted: np.ndarray, table: np.ndarray) -> np.ndarray:
     """What a linear regression on some rows leaves of others."""
-    return table[:, 0] - _design(table) @ np.linalg.lstsq(_design(fitted), fitted[:, 0], rcond=None)[0]
+    weights = np.linalg.lstsq(_design(fitted), fitted[:, 0], rcond=None)[0]
+    return np.asarray(table[:, 0] - _design(table) @ weights)
 
 
 def _differs(healthy: np.ndarray, now: np.ndarray) -> bool:

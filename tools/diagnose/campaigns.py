@@ -54,7 +54,8 @@ class CampaignFiles(Display):
             seed: of everything that is drawn
         """
         asked, healthy, *siblings = self.cases[case]
-        rig, given = self.adapter.rig, {"card": self.card, "quick": quick, "seed": seed}
+        rig = self.adapter.rig
+        given: dict[str, Any] = {"card": self.card, "quick": quick, "seed": seed}
         if self.adapter.logs:
             return diagnose(None, rig, logs=asked, reference_logs=healthy, sibling_logs=siblings, **given)
         return diagnose(asked, rig, reference=healthy, **given)
