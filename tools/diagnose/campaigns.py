@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import ScenarioError
-from ...scenarios.measured.adapter import Adapter, adapter, tables, write_csv
+from ...scenarios.measured.adapter import Adapter, adapter, write_csv
 from ..show.console import folder as make_folder, write
 from ..show.display import Display
 from .api import Diagnosis, diagnose
@@ -65,7 +65,7 @@ def campaign(name: str, folder: str | Path, out: str | Path, *, case: str = "") 
     """Card and tables of a campaign that others published, from the files that a user downloaded.
 
     Args:
-        name: of the campaign, see `list_campaigns`
+        name: of the campaign: edp, hydraulic, kelmarsh, pronostia or wind_turbine
         folder: with the downloaded files
         out: folder for card and tables
         case: only this one
@@ -92,8 +92,3 @@ def campaign(name: str, folder: str | Path, out: str | Path, *, case: str = "") 
         for path, rows in zip(files[one.name], parts.values(), strict=True):
             write_csv(path, rows)
     return CampaignFiles(known, place / "card.toml", files)
-
-
-def list_campaigns() -> dict[str, str]:
-    """Campaigns that have an adapter, by name: what they are."""
-    return {name: str(table["title"]) for name, table in tables().items()}
