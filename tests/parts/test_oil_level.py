@@ -75,7 +75,7 @@ def drag(own: dict[str, float], nets: tuple[tuple[str, ...], ...] = ()) -> float
     values = {k: v for k, v in spec.part("output_bearing_a").values.items() if k != "oil_bath"} | own
     nets = (("bath.shaft", "output.flange"), ("bath.inner", "bath.outer", "oil.heat"), *nets)
     nets += (("bath.lubricant", "oil.lubricant"), ("bath.load", "output_support.load_a"))
-    flat = flatten(assemble(spec.with_parts((PartSpec("bath", "DeepGrooveBallBearing", values),), nets)))
+    flat = spec.with_parts((PartSpec("bath", "DeepGrooveBallBearing", values),), nets).flat()
     y = evaluate_at(flat, flat.starts("state"), [100.0 for _ in flat.inputs], flat.starts("parameter"))["y"]
     return float(y[[q.name for q in flat.outputs].index("bath.tau_loss")])
 
