@@ -375,7 +375,9 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     assert answer.code == 0, answer.err
     start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(start["rotor.w"]) == pytest.approx(1450 * np.pi / 30)
-    assert float(start["input.tau"]) == pytest.approx(590 / 12.56, rel=0.06)
+    load_ = -float(start["output.tau"])  # its friction falls with the speed: torques alone hold a part of the load
+    assert load_ in (590.0, 0.75 * 590.0, 0.5 * 590.0, 0.25 * 590.0)
+    assert float(start["input.tau"]) == pytest.approx(load_ / 12.56, rel=0.06)
 
 
 @pytest.mark.parametrize(
