@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,15 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None =
     """
     path = _find(name_or_path)
     known = load_installed_types() | PARTS | EXTRA_PARTS if types is None else types
-    return _Loader(path, read_toml(path), known).scenario()
+    return (_shipped if RIGS in path.parents else _loaded)(path, tuple(known.items()))
+
+
+def _loaded(path: Path, known: tuple[tuple[str, type[Component]], ...]) -> Scenario:
+    return _Loader(path, read_toml(path), dict(known)).scenario()
+
+
+#: Shipped rigs stay as they are while a program runs.
+_shipped = cache(_loaded)
 
 
 def _find(name_or_path: str | Path) -> Path:

@@ -1,8 +1,10 @@
-"""The two-stage helical rig without its six bearings, for tests that write them in fewer lines."""
+"""The two-stage helical rig without its six bearings, or without churning: for tests that have their own."""
 
 import re
+from dataclasses import replace
 
-from gearheat.scenarios.load import RIGS
+from gearheat.model.machines.spec import Spec
+from gearheat.scenarios.load import RIGS, load
 
 WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
 
@@ -25,3 +27,12 @@ def with_bearings(written: str) -> str:
     """The rig with other tables for its bearings, before those of the oil."""
     text = re.sub(r"\[part\.\w+_bearing_[ab]\].*?(?=\n\[|\n# -)", "", WHOLE, flags=re.S)
     return text.replace("[part.oil]", written + "[part.oil]")
+
+
+def without_level() -> Spec:
+    """The rig with no wheel that dips, and no level of its oil."""
+    spec = load("helical_two_stage").spec
+    parts = [replace(p, values={k: v for k, v in p.values.items() if k != "level"}) for p in spec.parts]
+    nets = [tuple(port for port in net if not port.startswith("churning_")) for net in spec.connections]
+    kept = tuple(p for p in parts if not p.name.startswith("churning_"))
+    return replace(spec, parts=kept, connections=tuple(net for net in nets if net != ("oil.sump",)))

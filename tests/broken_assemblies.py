@@ -166,6 +166,13 @@ def one_tapered_bearing() -> Assembly:
     return gearbox({"bearing_a": ("TaperedRollerBearing", TAPERED)})
 
 
+@broken
+def thrust_bearing_under_a_gear() -> Assembly:
+    """a thrust bearing alone at one end of a shaft with a gear"""
+    values = {key: value for key, value in BEARING.items() if key not in ("F_r_0", "R_2", "S_2", "C_0")}
+    return gearbox({"bearing_a": ("ThrustBallBearing", values)})
+
+
 def set_against(arrangement: str, ends: str = "ab") -> Assembly:
     """Tapered roller bearings face to face or back to back, their thrusts connected in an order."""
     support = SOUND["support"][1] | dict(arrangement=arrangement)

@@ -11,9 +11,7 @@ from pathlib import Path
 import numpy as np
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
-from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
 from gearheat.tools.bench.c_importer import Compiler, program, unpack
 
@@ -27,14 +25,14 @@ LIBRARY = ("-std=c99", "-shared", "-fPIC", "-fvisibility=hidden", "-ffp-contract
 def planetary() -> tuple[FlatModel, Mapping[str, float]]:
     """The planetary rig with speed and torque of the carrier given, and its operating point."""
     scenario = load("planetary")
-    return flatten(assemble(scenario.spec)), scenario.operating_point
+    return scenario.spec.flat(), scenario.operating_point
 
 
 @cache
 def planetary_on_torques() -> tuple[FlatModel, Mapping[str, float]]:
     """The planetary rig with the torques of both shafts given, so that its speed is a state; balanced at the start."""
     scenario = load("planetary")
-    flat = flatten(assemble(scenario.spec.driven({"carrier": ("tau",), "sun": ("tau",)})))
+    flat = scenario.spec.driven({"carrier": ("tau",), "sun": ("tau",)}).flat()
     start = {n: v for n, v in scenario.operating_point.items() if flat.index[n][0] != "output"}
     return flat, {**start, "sun.tau": -612.7, "rotor.w": 104.7}
 

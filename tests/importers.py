@@ -27,8 +27,7 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.util import read_csv
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import PartSpec, Spec, assemble
+from gearheat.model.machines.spec import PartSpec, Spec
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import load
@@ -125,7 +124,7 @@ def _programs(fmus: Mapping[int, Path], exact: Mapping[str, float], folder: Path
 def _fmus(folder: Path) -> tuple[FlatModel, Mapping[int, Path]]:
     """The planetary rig at its operating point, for both versions of the standard."""
     scenario = load("planetary")
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     start = dict(scenario.operating_point)
     return flat, {fmi: export(flat, folder / f"planetary_{fmi}.fmu", start=start, fmi=fmi) for fmi in (2, 3)}
 

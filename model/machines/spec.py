@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from ..core.component import Component
 from ..core.connect import Assembly
+from ..core.flat import FlatModel
+from ..core.flatten import flatten
 from ..errors import Problems, ScenarioError, suggestion
 from ..files import tables
 from ..parts import PARTS
 
 #: Kinds of machines, a file in `layouts` each. The parts of the last are named by the rig file alone.
 LAYOUTS = ("planetary", "harmonic", "cycloidal", "cycloidal_printed", "rv_stage", "drum_motor", "network")
+#: Flat models kept: to flatten takes as long as all that is then asked of a rig.
+KEPT = 16
 
 
 @cache
@@ -45,6 +49,15 @@ class Spec:
     parts: tuple[PartSpec, ...]
     connections: tuple[tuple[str, ...], ...]
     types: Mapping[str, type[Component]] = field(default_factory=lambda: PARTS, repr=False)
+
+    def flat(self) -> FlatModel:
+        """The flat model; made once of equal specs. Raises GearheatError where there is none."""
+        return _flat(_Whole(self, repr((self.name, self.doc, self.parts, self.connections)), self.used))
+
+    @property
+    def used(self) -> tuple[type[Component] | None, ...]:
+        """The class of each part, None of an unknown one."""
+        return tuple(self.types.get(part.type) for part in self.parts)
 
     def part(self, name: str) -> PartSpec:
         """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
@@ -129,3 +142,17 @@ def assemble(spec: Spec) -> Assembly:
             parts.append(spec.types[part.type](part.name, **part.values))
     problems.check()
     return Assembly(spec.name, spec.doc, tuple(parts), spec.connections)
+
+
+@dataclass(frozen=True)
+class _Whole:
+    """A spec by all that its flat model follows from."""
+
+    spec: Spec = field(compare=False)
+    text: str
+    types: tuple[type[Component] | None, ...]
+
+
+@lru_cache(KEPT)
+def _flat(whole: _Whole) -> FlatModel:
+    return flatten(assemble(whole.spec))

@@ -11,13 +11,15 @@ from ..core.component import SOUND, Component, Equation, Faults, Related, equati
 from ..core.declare import Choice, Parameter
 from ..laws.preload import axial_load_set_against
 from ..laws.smooth import Num, smooth_abs
-from .bearings import RollingBearing
+from .bearings import CylindricalRollerThrustBearing, RollingBearing, ThrustBallBearing
 from .friction import PlainBearing
 from .ports import BearingLoad, OwnThrust, ToothForce
 from .relations import require
 
 #: Force below which the direction of a bearing load is blurred [N].
 FORCE_WIDTH = 1.0
+#: Bearings that carry no radial force.
+THRUST = (ThrustBallBearing, CylindricalRollerThrustBearing)
 #: The arrangement in which a bearing holds the shaft by itself, both ways.
 LOCATED = "one locates"
 
@@ -60,6 +62,11 @@ class ShaftSupport(Component):
             bearings = [part for part in met[f"load_{end}"] if isinstance(part, RollingBearing | PlainBearing)]
             names = ", ".join(f"{part.name} ({type(part).__name__})" for part in bearings)
             ways = max((part.holds() for part in bearings), default=2)
+            if bearings and all(isinstance(part, THRUST) for part in bearings):
+                yield (
+                    f"{self.name} has bearing {end} carry radial force, and {names} carries none. Connect a radial "
+                    f"bearing to {self.name}.load_{end}, beside it or in its place."
+                )
             share = self.values.get("axial_share_a", 0.5)
             if ways == 0 and (share if end == "a" else 1 - share) > 0:
                 yield (

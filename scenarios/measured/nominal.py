@@ -11,9 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ...model.core.flat import FlatModel
-from ...model.core.flatten import flatten
 from ...model.errors import GearheatError
-from ...model.machines.spec import assemble
 from ...model.parts.shaft import ShaftEnd
 from ...model.run.steady import steady
 from ..scenario import Scenario
@@ -37,7 +35,7 @@ class Nominal:
     @cached_property
     def flat(self) -> FlatModel:
         """The flat model."""
-        return flatten(assemble(self.scenario.spec))
+        return self.scenario.spec.flat()
 
     @cached_property
     def operating(self) -> Mapping[str, float]:

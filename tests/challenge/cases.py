@@ -101,8 +101,7 @@ def make_case(
     Raises:
         LookupError: no cause reaches the wanted signal-to-noise ratio as far from its rivals as wanted
     """
-    drawn, rank = schedule(number, seed, k)
-    kind = kind or drawn
+    kind, rank = (kind, k) if kind else schedule(number, seed, k)
     setting_rng, hidden_rng, noise_rng, rival_rng = (np.random.default_rng([seed, number, k, i]) for i in range(4))
     d = draw(setting_rng)
     while not (d.oil(d.run(d.plan, d.base, ())) < T_OIL_MAX).all():

@@ -16,8 +16,6 @@ from functools import cache, lru_cache, partial
 import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
 
 from . import files, forms
@@ -192,7 +190,7 @@ class ModelRig:
         scenario = load(machine.rig)
         w, tau, other = machine.ends
         driven = scenario.spec if machine.sensors else scenario.spec.driven({"carrier": ("w", "tau")})
-        flat = flatten(assemble(driven))
+        flat = driven.flat()
         self.nodes = len(flat.states)
         self._state = [flat.locate(f"{body}.T")[1] for body in machine.bodies]
         n, load_torque, room = (ca.SX.sym(name) for name in ("w", "tau", "room"))

@@ -22,9 +22,7 @@ from challenge.printing import show
 from challenge.scoring import Outcome, metrics, report, score, wilson
 from challenge.sheets import SHEETS
 from challenge.signal_to_noise import Noise, Rivals, snr_of
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import DataError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.model.run.steady import steady_table
@@ -42,7 +40,7 @@ def test_own_rig_is_the_model() -> None:
     plan = draw_plan(np.random.default_rng(3), warm_start=True)
     shown = rig.run(model_rig.rig_of("planetary"), 7, plan, {}, ())
     scenario = load("planetary")
-    flat = flatten(assemble(scenario.spec.driven({"carrier": ("w", "tau")})))
+    flat = scenario.spec.driven({"carrier": ("w", "tau")}).flat()
     j = 6
     begin, first, second = plan.room[:, j] + KELVIN
     restart = first + (second - first) * plan.stop[j] / (plan.stop[j] + plan.dwell[1, j])
@@ -79,7 +77,7 @@ def test_steady_points_are_steady_states_and_a_loss_brakes_as_much_as_it_heats(n
     columns = {w: speed, tau: load_torque, "room.T": d.plan.room[2] + KELVIN}
     columns |= {f"{b}.Q_flow_external": heat[p] for p, b in zip(("oil", "gears"), machine.bodies, strict=False)}
     points = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
-    wanted = steady_table(flatten(assemble(load(name).spec)), points)
+    wanted = steady_table(load(name).spec.flat(), points)
     assert shown[3] + KELVIN == pytest.approx(wanted["oil.T"], abs=1e-3)
     assert (machine.other * shown[2] - wanted[other]) * speed == pytest.approx(sum(heat.values()), rel=1e-3)
     assert (sum(heat.values()) > 1.0).any()

@@ -1,6 +1,9 @@
 """The sheet of machines that nobody chose: the same seed gives the same bytes, and what is hidden shows."""
 
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,28 +11,45 @@ from challenge import machines
 from challenge.hide import APART
 from gearheat.scenarios.load import load
 
-CASES = {"clean": 4, "single": 2, "several": 0}
+#: Kind of a case -> its number, and how few and many causes it hides.
+CASES = {"clean": (4, 0, 0), "single": (2, 1, 1), "several": (0, 2, 4)}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, dict[str, Any]]]:
+    """Folder and truth of the case of a kind; made once."""
+
+    @cache
+    def make(kind: str) -> tuple[Path, dict[str, Any]]:
+        folder = tmp_path_factory.mktemp(kind)
+        return folder, machines.make(5, 3, CASES[kind][0], folder, kind)
+
+    return make
 
 
 @pytest.mark.parametrize("kind", CASES)
-def test_a_case_is_what_its_seed_says(kind: str, tmp_path: Path) -> None:
-    first, again = (machines.make(5, 3, CASES[kind], tmp_path / name, kind) for name in ("one", "two"))
-    one, two = (tmp_path / name / "case" for name in ("one", "two"))
-    for file in ("DATA.csv", "machine.toml"):
-        assert (one / file).read_bytes() == (two / file).read_bytes()
-    assert first["effects"] == again["effects"] and first["kind"] == kind
-    assert load(str(one / "machine.toml")).spec.parts
-    table = np.genfromtxt(one / "DATA.csv", delimiter=",", names=True)
+def test_a_case_shows_what_it_hides(kind: str, made) -> None:
+    folder, truth = made(kind)
+    assert truth["kind"] == kind
+    assert load(str(folder / "case" / "machine.toml")).spec.parts
+    table = np.genfromtxt(folder / "case" / "DATA.csv", delimiter=",", names=True)
     assert 20 <= len(table) <= 32 and np.isfinite(table["T_oil_C"]).all()
     assert (table["T_oil_C"] - table["T_amb_C"]).max() > machines.WARM - 10.0  # an instrument may be wrong
-    number = {"clean": (0, 0), "single": (1, 1), "several": (2, 4)}[kind]
-    assert number[0] <= len(first["causes"]) <= number[1]
-    assert all(machines.LEAST <= e["snr"] <= machines.MOST for e in first["effects"])
+    assert CASES[kind][1] <= len(truth["causes"]) <= CASES[kind][2]
+    assert all(machines.LEAST <= e["snr"] <= machines.MOST for e in truth["effects"])
 
 
-def test_probes_that_err_together_are_nearer_to_their_rivals_than_one_alone(tmp_path: Path) -> None:
-    truth = machines.make(5, 3, 1, tmp_path, "single")
-    machine = machines.Machine(tmp_path / "case" / "machine.toml", np.random.default_rng(0))
+def test_a_case_is_what_its_seed_says(made, tmp_path: Path) -> None:
+    folder, first = made("several")
+    again = machines.make(5, 3, CASES["several"][0], tmp_path, "several")
+    for file in ("DATA.csv", "machine.toml"):
+        assert (folder / "case" / file).read_bytes() == (tmp_path / "case" / file).read_bytes()
+    assert first["effects"] == again["effects"]
+
+
+def test_probes_that_err_together_are_nearer_to_their_rivals_than_one_alone(made) -> None:
+    folder, truth = made("single")
+    machine = machines.Machine(folder / "case" / "machine.toml", np.random.default_rng(0))
     oil, wall = ({}, {"T_oil": -3.0}), ({}, {"T_wall": -3.0})
     near, _ = machine.distance([oil, wall], {"sensor.oil_temp.offset", "sensor.wall_temp.offset"})
     far, _ = machine.distance([oil], {"sensor.oil_temp.offset"})

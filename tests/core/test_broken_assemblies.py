@@ -62,6 +62,10 @@ SAYS: dict[str, tuple[str, ...]] = {
         "bearing_a (TaperedRollerBearing) pushes the shaft along",
         'Give support arrangement = "face-to-face" or "back-to-back"',
     ),
+    "thrust_bearing_under_a_gear": (
+        "support has bearing a carry radial force, and bearing_a (ThrustBallBearing) carries none",
+        "Connect a radial bearing to support.load_a",
+    ),
     "thrusts_that_point_the_same_way": (
         "support.load_a loads bearing_a (TaperedRollerBearing), and support.thrust_a is that of bearing_b",
         "Connect both ports to one bearing",

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from gearheat.fmu.export import export
 from gearheat.fmu.play import play
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
@@ -23,13 +21,13 @@ FINE, COARSE = 1.0, 60.0
 def duty(rig: str, end: str) -> dict[str, float]:
     """Speed and torque of one shaft end where the rig works, in a room of -35 degC."""
     scenario = load(rig)
-    at = steady(flatten(assemble(scenario.spec)), scenario.operating_point)
+    at = steady(scenario.spec.flat(), scenario.operating_point)
     return {f"{end}.w": float(at[f"{end}.w"][0]), f"{end}.tau": float(at[f"{end}.tau"][0]), "room.T": COLD}
 
 
 @pytest.mark.parametrize(("rig", "end"), DRIVES)
 def test_a_cold_start_runs_through(rig: str, end: str, tmp_path: Path) -> None:
-    flat = flatten(assemble(load(rig).spec.driven({end: ("w", "tau")})))
+    flat = load(rig).spec.driven({end: ("w", "tau")}).flat()
     given, start = duty(rig, end), dict.fromkeys((q.name for q in flat.states), COLD)
     times = np.arange(0, HOURS * 3600 + FINE / 2, FINE)
     minutes = slice(None, None, int(COARSE / FINE))
@@ -50,7 +48,7 @@ def test_a_cold_start_runs_through(rig: str, end: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("end", ["carrier", "sun"])
 def test_a_shaft_turned_by_next_to_nothing(end: str, tmp_path: Path) -> None:
     """200 rpm and 0.4 N.m at the sun, in oil so thick that the other side has to drive as well."""
-    flat = flatten(assemble(load("planetary").spec.driven({end: ("w", "tau")})))
+    flat = load("planetary").spec.driven({end: ("w", "tau")}).flat()
     w = {"sun": 200.0, "carrier": 50.0}[end] * np.pi / 30
     given = {f"{end}.w": w, f"{end}.tau": 0.4, "room.T": COLD}
     start = dict.fromkeys((q.name for q in flat.states), COLD)

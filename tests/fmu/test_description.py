@@ -18,9 +18,7 @@ from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
 from gearheat.fmu.source import source
 from gearheat.fmu.variables import drop_idle, per_second, table
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.units import in_unit
 from gearheat.scenarios.load import list_rigs, load
@@ -161,7 +159,7 @@ SHOWN = ("K", "rad/s", "rad", "m", "m2/s", "m3", "Pa", "J", "W")
 def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
     """A description of its own, a unit that is understood, the unit people use, a start inside the range."""
     scenario = load(rig)
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     deviating = [q.name for q in flat.states]
     variables = list(table(flat, choices=drop_idle(choices_of(scenario), flat), deviating=deviating))
     assert {v.kind for v in variables} >= {"choice", "deviation"}

@@ -18,9 +18,8 @@ from fmpy.fmi2 import FMU2Model
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.spec import Spec, assemble
+from gearheat.model.machines.spec import Spec
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
@@ -56,13 +55,13 @@ class Rig:
 
     def assembled(self, values: Mapping[str, float]) -> FlatModel:
         """The model of the rig file with these values."""
-        return flatten(assemble(self.spec.with_values(values)))
+        return self.spec.with_values(values).flat()
 
 
 @cache
 def rig(name: str) -> Rig:
     spec = load(name).spec
-    return Rig(spec, flatten(assemble(spec)))
+    return Rig(spec, spec.flat())
 
 
 def moved(q: Quantity, share: float) -> float | None:

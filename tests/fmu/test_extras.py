@@ -28,7 +28,7 @@ from gearheat.model.core.declare import Parameter, State
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
-from gearheat.model.machines.spec import PartSpec, Spec, assemble
+from gearheat.model.machines.spec import PartSpec, Spec
 from gearheat.model.parts.ports import Flange
 from gearheat.model.parts.shaft import Inertia, ShaftEnd
 from lxml import etree
@@ -364,7 +364,7 @@ def test_an_extended_machine(tmp_path: Path) -> None:
     cooler = PartSpec("cooler", "ThermalConductor", {"G": 30.0})
     extended = spec.with_parts([cooler], [("body.heat", "cooler.a"), ("cooler.b", "room.floor")])
     for machine, G in ((spec, 10.0), (extended, 40.0)):
-        flat = flatten(assemble(machine))
+        flat = machine.flat()
         path = export(flat, tmp_path / f"{G:g}.fmu", start={"body.T": 350.0, "room.T": 300.0})
         played = play(path, {}, 100, 10, tolerance=1e-8)
         assert played["body.T"] == pytest.approx(300 + 50 * np.exp(-G * played.time / 1000), abs=1e-5)

@@ -19,9 +19,8 @@ from for_each import one_of_each
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
-from gearheat.model.machines.spec import Spec, assemble
+from gearheat.model.machines.spec import Spec
 from gearheat.model.parts import PARTS
 from gearheat.model.run.result import LEFT, out_of_range
 from gearheat.model.run.rows import evaluate
@@ -82,14 +81,14 @@ ALONE = sorted(set(PARTS) - {part.type for rig in list_rigs() for part in load(r
 @cache
 def model(rig: str, drive: str) -> FlatModel:
     spec = load(rig).spec
-    return flatten(assemble(spec.driven(drives(spec)[drive])))
+    return spec.driven(drives(spec)[drive]).flat()
 
 
 @cache
 def usual(rig: str) -> Point:
     """Speeds and torques of the shafts where the rig works."""
     scenario = load(rig)
-    result = steady(flatten(assemble(scenario.spec)), scenario.operating_point)
+    result = steady(scenario.spec.flat(), scenario.operating_point)
     names = [f"{end}.{key}" for end in scenario.spec.of_type("ShaftEnd") for key in ("w", "tau")]
     return {name: float(result[name][0]) for name in names}
 

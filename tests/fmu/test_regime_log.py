@@ -6,13 +6,11 @@ from typing import Any
 
 import pytest
 from gearheat.fmu.export import export
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
 
 
 def test_the_log_names_the_regime(tmp_path: Path, opened: Callable[..., Any]) -> None:
-    fmu = export(flatten(assemble(load("harmonic_printed").spec)), tmp_path / "printed.fmu")
+    fmu = export(load("harmonic_printed").spec.flat(), tmp_path / "printed.fmu")
     one = opened(fmu, logging=True).start()
     for k in range(3):
         one.fmu.doStep(k, 1)

@@ -9,9 +9,7 @@ import pytest
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
@@ -25,7 +23,7 @@ EQUATION = "stage_1: mesh loss"
 
 @pytest.fixture(scope="module")
 def flat() -> FlatModel:
-    return flatten(assemble(load("helical_two_stage").spec))
+    return load("helical_two_stage").spec.flat()
 
 
 @pytest.fixture

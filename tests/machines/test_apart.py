@@ -1,10 +1,9 @@
 """A machine cut into pieces: what they pass to each other, and which cuts are refused."""
 
 import pytest
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.apart import REST, Joint, Pieces, cut_machine
-from gearheat.model.machines.spec import PartSpec, Spec, assemble
+from gearheat.model.machines.spec import PartSpec, Spec
 
 PARTS = (
     PartSpec("oil", "HeatCapacity", {"C": 5e3}),
@@ -30,7 +29,7 @@ ROOM = ("room", "walls", "outdoors")
 
 
 def inputs(pieces: Pieces, name: str) -> set[str]:
-    return {q.name for q in flatten(assemble(pieces.specs[name])).inputs}
+    return {q.name for q in pieces.specs[name].flat().inputs}
 
 
 def test_pieces_pass_temperatures_and_heat() -> None:

@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.scenarios.load import load
 from hypothesis import given, settings, strategies as st
@@ -27,7 +25,7 @@ _flat: dict = {}
 def flat_of(drive: str, power_flow: str = "successive"):
     if (drive, power_flow) not in _flat:
         spec = SPEC.with_values({"gear_set.power_flow": power_flow}).driven(DRIVES[drive])
-        _flat[drive, power_flow] = flatten(assemble(spec))
+        _flat[drive, power_flow] = spec.flat()
     return _flat[drive, power_flow]
 
 
@@ -109,12 +107,12 @@ def test_rotor_accelerates_by_what_is_left() -> None:
 
 def test_two_speeds_at_once_are_refused() -> None:
     with pytest.raises(StructureError, match=r"Too much is said in .*speed of the shaft"):
-        flatten(assemble(SPEC.driven({"carrier": ("w",), "sun": ("w",)})))
+        SPEC.driven({"carrier": ("w",), "sun": ("w",)}).flat()
 
 
 def test_nothing_given_is_refused() -> None:
     with pytest.raises(StructureError, match="Nothing determines"):
-        flatten(assemble(SPEC.driven({"carrier": ("w",)})))
+        SPEC.driven({"carrier": ("w",)}).flat()
 
 
 @pytest.mark.parametrize("speed", [0.0, 1e-6, -26.2])

@@ -3,8 +3,6 @@
 import math
 
 import pytest
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -49,7 +47,7 @@ def test_a_jet_takes_power_or_gives_it_and_no_more_heat_than_its_oil_can() -> No
 
 def test_a_bearing_faster_than_makers_allow_says_so() -> None:
     scenario = load("helical_two_stage")
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     fast, slow = (steady(flat, {"input.w": n, "output.tau": -1.0}).outside for n in (2200.0, 150.0))
     assert {o.component for o in fast if o.argument == "w * d_m"} == {"input_bearing_a", "input_bearing_b"}
     assert not [o for o in slow if o.argument == "w * d_m"]

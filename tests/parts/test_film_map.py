@@ -12,7 +12,6 @@ from gearheat.fmu.export import export
 from gearheat.fmu.play import play
 from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.declare import Choice, Input, Output, State
-from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.film import film_thickness
 from gearheat.model.laws.film_map import FilmMap
 from gearheat.model.machines.spec import assemble
@@ -35,7 +34,7 @@ def test_the_film_of_gears_is_that_of_the_map(law: FilmMap) -> None:
     spec = scenario.spec
     results = []
     for film in ("grubin", law):
-        flat = flatten(assemble(spec.with_values({"stage_1.film": film})))
+        flat = spec.with_values({"stage_1.film": film}).flat()
         results.append((flat, steady(flat, {q.name: q.start for q in flat.inputs})))
     (flat, before), (_, after) = results
     values = {q.name.removeprefix("stage_1."): q.start for q in flat.parameters if q.name.startswith("stage_1.")}

@@ -8,7 +8,6 @@ import pytest
 from gearheat.model.core.component import Component, Equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.parts import PARTS
 from gearheat.model.run.result import Result
 from gearheat.model.run.steady import steady
@@ -62,7 +61,7 @@ def test_sides_of_equations_do_not_matter(names: tuple[str, ...]) -> None:
     if not names:
         kinds |= {k: swapped(PARTS[k], ()) for k in ("DeepGrooveBallBearing", "TwoGearSupport", "ShaftEnd", "LipSeal")}
     changed = replace(scenario.spec, types={**scenario.spec.types, **kinds})
-    here = steady(flatten(assemble(scenario.spec)), scenario.operating_point)
-    there = steady(flatten(assemble(changed)), scenario.operating_point)
+    here = steady(scenario.spec.flat(), scenario.operating_point)
+    there = steady(changed.flat(), scenario.operating_point)
     for name, column in here.columns.items():
         assert math.isclose(there[name][0], column[0], rel_tol=1e-9, abs_tol=1e-9), name

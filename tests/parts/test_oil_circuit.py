@@ -263,12 +263,12 @@ def test_oil_that_finds_no_way_back_is_refused(scenario: Scenario) -> None:
     """Two tanks in the air with a return of their own, but nothing that moves the oil through it."""
     spec = scenario.spec.with_values({"upper.runs_over": False})
     with pytest.raises(StructureError, match=r"(?s)nothing says what flows on either way.*runs_over = true"):
-        flatten(assemble(spec))
+        spec.flat()
     spec = replace(spec, connections=tuple(tuple(p for p in net if p != "upper.outlet") for net in spec.connections))
     hose = PartSpec("hose", "OilNozzle", {"d": 5e-3, "C_d": 0.7})
     nets = (("upper.outlet", "hose.a"), ("hose.b", "tank.inlet"), ("hose.lubricant", "tank.lubricant"))
     with pytest.raises(GearheatError, match=r"its oil would change by .*runs_over = true"):
-        simulate(flatten(assemble(spec.with_parts((hose,), nets))), join_phases([(1.0, scenario.operating_point)]))
+        simulate(spec.with_parts((hose,), nets).flat(), join_phases([(1.0, scenario.operating_point)]))
 
 
 def test_a_circuit_without_a_sump_has_no_pressure() -> None:

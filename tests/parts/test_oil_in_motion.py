@@ -1,10 +1,10 @@
 """Several gears in one sump: what they throw leaves less for all of them, walls brake in thick oil, air makes light."""
 
 import pytest
-from gearheat.model.core.flatten import flatten
+from bearing_rig import without_level
 from gearheat.model.errors import StructureError
 from gearheat.model.laws.gear_churning import gear_churning_torque
-from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 
@@ -20,8 +20,8 @@ def run(speed: float, wheels: int = 2, **oil: float) -> dict[str, float]:
     nets += [(f"{n}.{port}", f"oil.{net}") for n, *_ in sizes for port, net in (("lubricant",) * 2, ("sump",) * 2)]
     nets += [(f"{n}.{port}", "oil.heat") for n, *_ in sizes for port in ("inner", "outer")]
     scenario = load("helical_two_stage")
-    spec = scenario.spec.with_parts(parts, nets).with_values({f"oil.{k}": v for k, v in oil.items()})
-    found = steady(flatten(assemble(spec)), scenario.operating_point | {"input.w": speed})
+    spec = without_level().with_parts(parts, nets).with_values({f"oil.{k}": v for k, v in oil.items()})
+    found = steady(spec.flat(), scenario.operating_point | {"input.w": speed})
     return {name: float(values[0]) for name, values in found.columns.items()}
 
 
@@ -48,7 +48,7 @@ def test_air_lifts_the_level_and_lightens_the_oil() -> None:
 def test_a_level_that_moves_is_given() -> None:
     moving = {f"oil.{k}": v for k, v in STANDING.items() if k != "level"} | {"oil.in_motion": True}
     with pytest.raises(StructureError, match=r"oil is in_motion and has no level\. Give it"):
-        flatten(assemble(load("helical_two_stage").spec.with_values(moving)))
+        without_level().with_values(moving).flat()
 
 
 def test_a_wall_brakes_in_thick_oil_only() -> None:

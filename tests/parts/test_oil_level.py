@@ -4,12 +4,12 @@ import itertools
 
 import casadi as ca
 import pytest
+from bearing_rig import without_level
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
 from gearheat.model.laws.gear_churning import gear_churning_torque, immersion
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.rows import evaluate_at
-from gearheat.scenarios.load import load
 
 #: The wheel of the second stage, its axis at the origin of heights.
 WHEEL = dict(count=1, inner_share=1, r=0.0957, b=0.05, m_n=0.003, height=0.0)
@@ -22,7 +22,7 @@ NETS = (
 
 
 def with_wheel(**oil: float):
-    spec = load("helical_two_stage").spec.with_parts((PartSpec("wheel", "GearChurning", WHEEL),), NETS)
+    spec = without_level().with_parts((PartSpec("wheel", "GearChurning", WHEEL),), NETS)
     return assemble(spec.with_values({f"oil.{k}": v for k, v in oil.items()}))
 
 
@@ -71,11 +71,11 @@ def test_depth_is_smooth_at_the_surface_and_when_submerged() -> None:
 
 def drag(own: dict[str, float], nets: tuple[tuple[str, ...], ...] = ()) -> float:
     """Friction torque of a bearing on the output shaft with its axis at the origin of heights, dipping by 20 mm."""
-    spec = load("helical_two_stage").spec.with_values({"oil.level": 0.02 - 0.5 * 0.0775 - 0.15 * 0.045})
+    spec = without_level().with_values({"oil.level": 0.02 - 0.5 * 0.0775 - 0.15 * 0.045})
     values = {k: v for k, v in spec.part("output_bearing_a").values.items() if k != "oil_bath"} | own
     nets = (("bath.shaft", "output.flange"), ("bath.inner", "bath.outer", "oil.heat"), *nets)
     nets += (("bath.lubricant", "oil.lubricant"), ("bath.load", "output_support.load_a"))
-    flat = flatten(assemble(spec.with_parts((PartSpec("bath", "DeepGrooveBallBearing", values),), nets)))
+    flat = spec.with_parts((PartSpec("bath", "DeepGrooveBallBearing", values),), nets).flat()
     y = evaluate_at(flat, flat.starts("state"), [100.0 for _ in flat.inputs], flat.starts("parameter"))["y"]
     return float(y[[q.name for q in flat.outputs].index("bath.tau_loss")])
 

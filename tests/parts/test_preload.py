@@ -6,9 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.preload import preloaded_axial_load
-from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -30,7 +29,7 @@ def with_pair(arrangement: str) -> FlatModel:
     pair = PartSpec("pair", "PreloadedPair", PAIR | {"arrangement": arrangement})
     joined = [(f"pair.{port}_{k}", f"output_bearing_{k}.{port}") for port in ("load", "thrust") for k in "ab"]
     joined += [("pair.inner", "shafts.heat"), ("pair.outer", "wall.heat")]
-    return flatten(assemble(spec.with_parts((pair,), tuple(joined))))
+    return spec.with_parts((pair,), tuple(joined)).flat()
 
 
 def at(arrangement: str, shafts: float, wall: float, **values: float) -> dict[str, float]:
@@ -69,7 +68,7 @@ def test_clearance_leaves_the_loads_of_the_shaft() -> None:
     """No preload: the friction is that of the rig without the pair."""
     loose = at("face-to-face", 293.15, 343.15)
     assert 0.0 <= loose["pair.F_0"] < 1e-2
-    flat = flatten(assemble(load(RIG).spec))
+    flat = load(RIG).spec.flat()
     x = np.array([{"shafts.T": 293.15, "wall.T": 343.15}.get(q.name, 333.15) for q in flat.states])
     u = np.array([{"input.w": 150.0, "output.tau": -590.0, "room.T": 293.15}.get(q.name, 0.0) for q in flat.inputs])
     plain = evaluate_at(flat, x, u, flat.starts("parameter"))["y"]

@@ -3,10 +3,9 @@
 import itertools
 
 import pytest
-from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.oil_convection import forced_disc_in_oil, forced_wall_in_oil
 from gearheat.model.machines.roles import Roles
-from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -65,7 +64,7 @@ def test_it_takes_the_place_of_a_constant_in_a_gearbox() -> None:
     nets += [("splash.shaft", "output.flange"), ("splash.lubricant", "oil.lubricant")]
     scenario = load("helical_two_stage")
     spec = scenario.spec.with_values({"oil_wall.G": 0.0}).with_parts([splash], nets)
-    flat, at = flatten(assemble(spec)), scenario.operating_point
+    flat, at = spec.flat(), scenario.operating_point
     roles = Roles.of(spec)  # to the diagnosis it is between oil and bodies, and brakes nothing
     assert "splash" in roles.oil_side
     assert roles.scaled("splash") == ("splash.A",)

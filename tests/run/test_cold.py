@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
@@ -18,7 +16,7 @@ BEARINGS = [f"{shaft}_bearing_{end}" for shaft in ("input", "middle", "output") 
 
 def reducer(values: dict | None = None, **given: tuple[str, ...]) -> FlatModel:
     spec = load("helical_two_stage").spec.with_values(values or {})
-    return flatten(assemble(spec.driven(given or {"input": ("w",), "output": ("tau",)})))
+    return spec.driven(given or {"input": ("w",), "output": ("tau",)}).flat()
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,7 @@ import math
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
@@ -20,7 +18,7 @@ TEMPERATURES = ("oil.T", "gears.T", "carrier_body.T", "wall.T", "surface.T")
 
 
 def gearbox(**given: tuple[str, ...]) -> FlatModel:
-    return flatten(assemble(load("planetary").spec.driven(given)))
+    return load("planetary").spec.driven(given).flat()
 
 
 @pytest.fixture(scope="module")

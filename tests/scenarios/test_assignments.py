@@ -4,9 +4,7 @@ import math
 
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario, parse_assignments
 from gearheat.scenarios.values import oil_values
@@ -19,7 +17,7 @@ def scenario() -> Scenario:
 
 @pytest.fixture(scope="module")
 def flat(scenario: Scenario) -> FlatModel:
-    return flatten(assemble(scenario.spec))
+    return scenario.spec.flat()
 
 
 def problems(target: Scenario | FlatModel, *texts: str) -> tuple[str, ...]:

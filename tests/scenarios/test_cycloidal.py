@@ -7,8 +7,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
@@ -30,7 +28,7 @@ def model() -> Callable[[str], FlatModel]:
 
     def of(rig: str) -> FlatModel:
         if rig not in found:
-            found[rig] = flatten(assemble(load(rig).spec))
+            found[rig] = load(rig).spec.flat()
         return found[rig]
 
     return of

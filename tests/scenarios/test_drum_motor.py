@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.laws.convection import mixed, natural_horizontal_cylinder
 from gearheat.model.laws.drum import drum_heat, forced_rotating_cylinder, lumped_temperature, source_coefficient
@@ -26,7 +25,7 @@ BARE = 15.3
 @cache
 def flat_of(rig: str, drive: tuple[tuple[str, tuple[str, ...]], ...] = (), **values: object) -> FlatModel:
     spec = load(rig).spec.with_values({k.replace("__", "."): v for k, v in values.items()})
-    return flatten(assemble(spec.driven(dict(drive)) if drive else spec))
+    return spec.driven(dict(drive)) if drive else spec.flat()
 
 
 def at(flat: FlatModel, **values: float) -> dict[str, float]:

@@ -51,12 +51,10 @@ def test_any_unit_of_the_right_kind(tmp_path: Path) -> None:
 
 
 def test_the_inputs_of_a_rig_and_of_a_flat_model(tmp_path: Path) -> None:
-    from gearheat.model.core.flatten import flatten
-    from gearheat.model.machines.spec import assemble
 
     scenario = load("planetary")
     path = table(tmp_path, "0,100,1500,25", "240,100,1500,26")
-    by_rig, by_model = read_duty(path, scenario.inputs()), read_duty(path, flatten(assemble(scenario.spec)))
+    by_rig, by_model = read_duty(path, scenario.inputs()), read_duty(path, scenario.spec.flat())
     assert list(by_rig.values) == list(by_model.values)
 
 

@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
@@ -23,7 +21,7 @@ def scenario() -> Scenario:
 
 @pytest.fixture(scope="module")
 def flat(scenario: Scenario) -> FlatModel:
-    return flatten(assemble(scenario.spec))
+    return scenario.spec.flat()
 
 
 def test_the_table_of_its_page(scenario: Scenario, flat: FlatModel) -> None:

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 from gearheat.fmu.batch import Batch, Status
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.laws import gears
 from gearheat.model.laws.mesh import tooth_loss_factor
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
 from gearheat.model.run.schedule import join_phases
@@ -34,7 +32,7 @@ SEALS = ("test_pinion_seal.P_loss", "slave_pinion_seal.P_loss", "wheel_seals.P_l
 
 @pytest.fixture(scope="module")
 def flat() -> FlatModel:
-    return flatten(assemble(load("fzg_four_square").spec))
+    return load("fzg_four_square").spec.flat()
 
 
 def motor_speed(n_pinion: float) -> float:

@@ -5,9 +5,7 @@ import math
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError, SolveError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
 from gearheat.model.run.schedule import join_phases
@@ -19,7 +17,7 @@ RPM = math.pi / 30
 
 
 def flat_of(rig: str, **choices: str) -> FlatModel:
-    return flatten(assemble(load(rig).spec.with_values({f"mesh.{k}": v for k, v in choices.items()})))
+    return load(rig).spec.with_values({f"mesh.{k}": v for k, v in choices.items()}).flat()
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +111,7 @@ class TestPhysical:
     def test_it_can_be_driven_from_either_side_or_hold(self) -> None:
         """As a multiplier the output drives; a light torque at the output does not turn it."""
         spec = load("harmonic").spec.driven({"output": ("w", "tau")})
-        found = steady(flatten(assemble(spec)), {"output.w": 15 * RPM, "output.tau": 180.0, "room.T": 293.15})
+        found = steady(spec.flat(), {"output.w": 15 * RPM, "output.tau": 180.0, "room.T": 293.15})
         assert found["output.P"][0] > -found["wave_generator.P"][0] > 0
 
     def test_the_circular_spline_may_turn_instead(self) -> None:
@@ -121,7 +119,7 @@ class TestPhysical:
         spec = load("harmonic").spec
         swap = {"mesh.flexspline": "mesh.circular_spline", "mesh.circular_spline": "mesh.flexspline"}
         turned = tuple(tuple(swap.get(port, port) for port in net) for net in spec.connections)
-        flat = flatten(assemble(type(spec)(spec.name, spec.doc, spec.parts, turned)))
+        flat = type(spec)(spec.name, spec.doc, spec.parts, turned).flat()
         found: Result = steady(flat, {"output.tau": -180.0})
         assert found["wave_generator.w"][0] / found["output.w"][0] == pytest.approx(67.0, rel=1e-12)
 

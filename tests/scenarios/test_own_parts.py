@@ -6,9 +6,7 @@ import re
 from importlib.metadata import EntryPoint
 
 import pytest
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios import own_types as loading
 from gearheat.scenarios.load import RIGS, load
@@ -62,7 +60,7 @@ def rig(tmp_path, monkeypatch):
 
 def warm(scenario) -> float:
     """The steady oil temperature at the operating point [K]."""
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     return float(steady(flat, scenario.operating_point)["oil.T"][0])
 
 

@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.laws.gears import profile_shift_sum, transverse_pressure_angle, working_pressure_angle
 from gearheat.model.machines.spec import Spec, assemble
@@ -29,7 +28,7 @@ def spec(name: str) -> Spec:
 
 @cache
 def flat(name: str) -> FlatModel:
-    return flatten(assemble(spec(name)))
+    return spec(name).flat()
 
 
 @pytest.mark.parametrize("name", list_rigs())
@@ -114,7 +113,7 @@ def test_another_pair_on_the_same_centre_distance_moves_everything() -> None:
     """25 and 72 teeth instead of 20 and 77: contact ratio, loss factor and ratio follow, as in the rig file."""
     teeth = {"stage_1.z_1": 25.0, "stage_1.z_2": 72.0}
     changed, before = steady(flat(HELICAL), teeth), steady(flat(HELICAL), {})
-    again = steady(flatten(assemble(spec(HELICAL).with_values(teeth))), {})
+    again = steady(spec(HELICAL).with_values(teeth).flat(), {})
     for name in ("stage_1.P_loss", "stage_1.eps_alpha", "stage_1.H_v", "efficiency.tau_loss", "output.w"):
         assert changed[name][0] == pytest.approx(again[name][0], rel=1e-9)
         assert changed[name][0] != pytest.approx(before[name][0], rel=1e-3)
@@ -163,7 +162,7 @@ def test_a_design_does_not_cut_teeth_into_pieces() -> None:
 def test_a_design_gives_what_the_rig_file_gives() -> None:
     model = flat(HELICAL)
     found = design(model, ["stage_1.b"], {"stage_1.P_loss": 45.0}, {})
-    again = steady(flatten(assemble(spec(HELICAL).with_values(found.values))), {})
+    again = steady(spec(HELICAL).with_values(found.values).flat(), {})
     for name in ("stage_1.P_loss", "oil.T", "efficiency.P_loss"):
         assert found.result[name][0] == pytest.approx(again[name][0], rel=1e-9)
 

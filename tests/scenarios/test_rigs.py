@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.schedule import join_phases
@@ -21,7 +19,7 @@ NAMES = tuple(list_rigs())
 
 
 def flat_model(scenario: Scenario) -> FlatModel:
-    return flatten(assemble(scenario.spec))
+    return scenario.spec.flat()
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +30,7 @@ def planetary() -> Scenario:
 @pytest.fixture(scope="module")
 def ideal(planetary: Scenario) -> FlatModel:
     """The planetary rig as its source computes it: mesh forces from the input torque."""
-    return flatten(assemble(planetary.spec.with_values({"gear_set.power_flow": "ideal"})))
+    return planetary.spec.with_values({"gear_set.power_flow": "ideal"}).flat()
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
 from gearheat.model.laws.cycloid_pin import contact_speed, curvature, entrainment_speed, reduced_radius, sliding_speed
 from gearheat.model.laws.film import fluid_share
@@ -25,7 +24,7 @@ W_CRANK = 39 * 15 * math.pi / 30
 
 
 def model(spec: Spec) -> FlatModel:
-    return flatten(assemble(spec))
+    return spec.flat()
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,7 @@ from pathlib import Path
 import pytest
 from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.declare import Parameter
-from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.spec import assemble
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.ports import HeatPort
 from gearheat.scenarios.load import load
@@ -51,7 +49,7 @@ def rig(tmp_path: Path) -> Path:
 def test_a_type_that_is_handed_over_is_read_built_and_written(rig: Path) -> None:
     types = PARTS | {"Heater": Heater}
     scenario = load(rig, types)
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     assert [q.name for q in flat.states] == ["block.T"] and "heater.P" in scenario.settable()
     rig.write_text(rig_text(scenario), encoding="utf-8")
     assert load(rig, types).spec.part("heater") == scenario.spec.part("heater")

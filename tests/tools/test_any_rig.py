@@ -91,7 +91,7 @@ def test_steady_states_are_fitted_with_what_made_them_however_many_a_test_has(ge
     vary = [
         x for v in ("input.w=700..1450 rpm", "output.tau=-590..-200 N.m", "room.T=15..25 degC") for x in ("--vary", v)
     ]
-    options = ("--grid", "2x2x2", "--set", "churning_1.c=12 W", "--output", "oil.T", "-o", table)
+    options = ("--grid", "2x2x2", "--set", "foot.G=5 W/K", "--output", "oil.T", "-o", table)
     assert gearheat("sweep", RIG, *vary, *options).code == 0
     lines = table.read_text().splitlines()
     numbered = [f"{line},{'test' if k == 0 else (k - 1) // rows + 1}" for k, line in enumerate(lines)]
@@ -104,10 +104,10 @@ def test_steady_states_are_fitted_with_what_made_them_however_many_a_test_has(ge
     }
     card.write_text("[columns]\n" + "".join(f'{key} = "{name}"\n' for key, name in columns.items()))
     measured = ("--data", table, "--card", card)
-    found = gearheat("calibrate", RIG, *measured, "--free", "churning_1.c", "--json", "-").json
-    assert found["free"]["churning_1.c"]["value"] == pytest.approx(12.0, rel=1e-4)
+    found = gearheat("calibrate", RIG, *measured, "--free", "foot.G", "--json", "-").json
+    assert found["free"]["foot.G"]["value"] == pytest.approx(5.0, rel=1e-4)
     assert found["rmse_after_K"] < 1e-3 < found["rmse_before_K"]
-    options = ("--set", "churning_1.c=12 W", "--jobs", 1, "--out", tmp_path / "out", "--json", "-")
+    options = ("--set", "foot.G=5 W/K", "--jobs", 1, "--out", tmp_path / "out", "--json", "-")
     assert gearheat("run", RIG, *measured, *options).json["rmse"]["overall"]["T_oil_K"] < 1e-3
 
 

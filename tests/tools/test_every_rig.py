@@ -10,8 +10,6 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 from for_each import one_of_each
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import list_rigs, load
 
 RIGS = tuple(one_of_each(list_rigs(), lambda rig: tuple(part.type for part in load(rig).spec.parts)))
@@ -107,7 +105,7 @@ def test_a_warm_up_in_fmpy_is_that_of_simulate(gearheat, rig: str, json_of, tmp_
     answer = gearheat("simulate", rig, "--duty", duty, "-o", out, "--json", "-")
     assert answer.code == 0, answer.err
     assert answer.json["energy_residual"] < 1e-6
-    flat = flatten(assemble(load(rig).spec))
+    flat = load(rig).spec.flat()
     bodies = [q.name for q in flat.states if q.unit == "K"]
     table = columns(out)
     start = {name: table[f"{name} [degC]"][0] + 273.15 for name in bodies}

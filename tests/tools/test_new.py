@@ -156,7 +156,7 @@ def test_oil_side_coefficients_are_near_those_of_constants(made, gearheat, name)
 def test_what_it_stands_on_is_a_choice(gearheat, tmp_path):
     """A frame takes more heat than a concrete floor, whose conductance grows with the size; rubber takes none."""
     share, foot = {}, {}
-    for base, power in (("concrete", 7.5), ("steel", 7.5), ("free", 7.5), ("concrete", 0.75)):
+    for base, power in (("concrete", 7.5), ("steel", 7.5), ("flange", 7.5), ("free", 7.5), ("concrete", 0.75)):
         path = tmp_path / f"{base}{power}.toml"
         plate = ("--stages", "helical", "--ratio", 4, "--power", f"{power} kW", "--speed", "1450 rpm", "-o", path)
         answer = gearheat("new", "it", *plate, "--base", base, "--json", "-")
@@ -166,10 +166,25 @@ def test_what_it_stands_on_is_a_choice(gearheat, tmp_path):
         foot[base, power] = found.get("foot.Q_flow", 0.0) / (found["surface.T"] - 20.0)
     assert share["free", 7.5] == foot["free", 7.5] == 0.0
     assert 0.05 < share["concrete", 7.5] < share["steel", 7.5] < 0.35
+    assert share["steel", 7.5] < share["flange", 7.5] < 0.5
     assert foot["concrete", 0.75] < 0.8 * foot["concrete", 7.5]
     answer = gearheat("new", "it", *plate, "--base", "rubber")
     assert answer.code == 2
-    assert "Bases: concrete, steel, free." in answer.err
+    assert "Bases: concrete, steel, flange, free." in answer.err
+
+
+def test_a_motor_at_the_housing_heats_it(gearheat, tmp_path):
+    plate = ("--stages", "helical", "--ratio", 4, "--power", "7.5 kW", "--speed", "1450 rpm", "--base", "flange")
+    cold, warm = (
+        gearheat("new", "it", *plate, *heat, "-o", tmp_path / f"{len(heat)}.toml", "--json", "-")
+        for heat in ((), ("--motor-heat", "50 W"))
+    )
+    assert 2 < warm.json["oil_degC"] - cold.json["oil_degC"] < 15
+    balance = gearheat("steady", tmp_path / "2.toml", "--json", "-").json["values"]
+    assert balance["room.Q_flow"] == pytest.approx(balance["efficiency.P_loss"] + 50, rel=1e-6)
+    for heat, words in (("50", "has no unit"), ("-5 W", "a motor gives heat")):
+        answer = gearheat("new", "bad", *plate, f"--motor-heat={heat}", "-o", tmp_path / "bad.toml")
+        assert answer.code == 2 and words in answer.err
 
 
 @pytest.mark.parametrize("name", PLATES)

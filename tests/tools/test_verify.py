@@ -52,7 +52,7 @@ def test_catalogues_are_20_statements_or_more_and_their_ratio_is_told() -> None:
     """Rows of makers need no rig; of one machine here, all in `test_every_number_of_every_rig_...`."""
     rows = read_published(CATALOGUES)
     assert len(rows) >= 20
-    assert all(r.where and r.published is not None for r in rows)
+    assert all(r.where and r.expected is not None for r in rows)
     one = next(r for r in rows if r.run == "new")
     (verdict,) = _judge_rows([one], Plates(gh.new), lambda _: None)
     told = _tell_losses(verdict)

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 from gearheat.fmu.batch import Batch, Status
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import list_rigs, load
@@ -14,7 +12,7 @@ from gearheat.scenarios.load import list_rigs, load
 def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     """At several loads, through a stop of its shaft and a room that cools down."""
     spec = load(name).spec
-    flat = flatten(assemble(spec))
+    flat = spec.flat()
     batch = Batch(flat)
     torques = [q.name for q in flat.inputs if q.name.endswith(".tau")]
     load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"]))

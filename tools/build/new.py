@@ -46,17 +46,21 @@ RIBBED = 0.25
 #: Height of a rib over its thickness [1].
 RIBS = 2.5
 #: What a unit stands on.
-BASES = ("concrete", "steel", "free")
-#: Bolts of a foot.
+BASES = ("concrete", "steel", "flange", "free")
+#: Bolts of a foot or flange.
 BOLTS = 4
 #: Diameter of a bolt over the wall's thickness [1].
 BOLT = 1.5
 #: Width of the two strips that a foot stands on over that of the housing [1].
 STRIPS = 2 * 0.15
+#: Inner over outer diameter of the ring on which a flange stands [1].
+SPIGOT = 0.77
 #: Thickness of a steel frame over that of the wall [1].
 FRAME = 2.0
-#: How far it reaches beyond the foot, at either end, over its length [1].
+#: How far it reaches beyond foot or flange, at either end, over their length [1].
 BEYOND = 0.5
+#: How a foot or flange is held.
+_BOLTED = f"{BOLTS} bolts {BOLT:g} times as thick as the walls, 0.2 mm of air beside them"
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 #: Kind of stage -> the size by which one is known.
@@ -94,6 +98,7 @@ def new(
     fan: bool = False,
     cooler: bool = False,
     base: str = "concrete",
+    motor_heat: str | None = None,
     out: str | Path | None = None,
 ) -> NewRig:
     """A rig of your own from a name plate: it runs at once, and says the rule of every number.
@@ -108,7 +113,9 @@ def new(
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
         fan: on the input shaft
         cooler: of the oil, for the losses at the name plate
-        base: what its foot stands on, "concrete" or a "steel" frame; "free" on rubber, or where it hangs on its shaft
+        base: what its foot stands on, "concrete" or a "steel" frame; "flange" on a steel plate; "free" on rubber, or
+            where it hangs on its shaft
+        motor_heat: what comes by the flange of a motor that is bolted to it, such as "50 W"
         out: file to write; none is left if None
 
     Raises:
@@ -126,6 +133,9 @@ def new(
     entry = _oil(oil)
     if base not in BASES:
         raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
+    motor = None if motor_heat is None else to_si(motor_heat, "W", name="--motor-heat")
+    if motor is not None and motor < 0:
+        raise ScenarioError(f"--motor-heat = {motor_heat}: a motor gives heat, expected 0 W or more.")
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
     with tempfile.TemporaryDirectory() as folder:
@@ -134,7 +144,7 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler))
+        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler, motor=motor))
         try:
             scenario = read_rig(path)
             flat = flat_of(scenario)
@@ -143,8 +153,8 @@ def new(
             path.unlink()
             why = error.problems[0]
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
-    told = ("oil.T", "efficiency.P_loss", "efficiency.eta", *(["foot.Q_flow"] if base != "free" else []))
-    kept = {key: float(rest[key][0]) for key in told}
+    kept = {key: float(rest[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
+    foot = float(rest["foot.Q_flow"][0]) if base != "free" else 0.0
     sizes = {
         "schema": "gearheat.new/1",
         "file": str(path),
@@ -156,7 +166,7 @@ def new(
         "loss_W": kept["efficiency.P_loss"],
         "efficiency": kept["efficiency.eta"],
         "base": base,
-        "foot_share": kept.get("foot.Q_flow", 0.0) / kept["efficiency.P_loss"],
+        "foot_share": foot / (kept["efficiency.P_loss"] + (motor or 0.0)),
     }
     return NewRig(scenario, sizes, tuple(_notes(made, sizes)))
 
@@ -183,7 +193,7 @@ def _oil(name: str) -> str:
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, cooler: bool) -> str:
+def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, cooler: bool, motor: float | None) -> str:
     """The rig file of a unit.
 
     Args:
@@ -194,6 +204,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, co
         base: one of `BASES`
         fan: whether one is on the input shaft
         cooler: whether the oil has one
+        motor: heat that comes by the flange of a motor [W], None without one
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
@@ -220,6 +231,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, co
         "cooled": COOLED,
         "cooler": _cooler(made, efficiency) if cooler else None,
         "foot": _foot(made, base),
+        "motor": motor,
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
@@ -307,15 +319,28 @@ def _cooler(made: Unit, efficiency: float) -> float:
 
 
 def _foot(made: Unit, base: str) -> dict[str, Any] | None:
-    """Foot of a unit: two strips along the housing, and what they stand on."""
+    """Foot of a unit, two strips along the housing, or its flange, and what they stand on."""
     if base == "free":
         return None
+    if base == "flange":
+        D, wide = min(made.length, made.height), 1 + 2 * BEYOND
+        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {_BOLTED}"
+        return {
+            "base": base,
+            "A": math.pi / 4 * (1 - SPIGOT**2) * D**2,
+            "count": BOLTS,
+            "d": BOLT * made.wall,
+            "A_frame": 2 * math.pi / 4 * (wide**2 - 1) * D**2,
+            "t_frame": FRAME * made.wall,
+            "L_frame": BEYOND * D,
+            "rule": f"{rule}; a steel plate {FRAME:g} times as thick as the walls, {wide:g} times as wide, in air",
+        }
     outline, beyond = made.length * made.width, BEYOND * made.length
     on = {
         "concrete": "heat spreads below its outline into a concrete floor",
         "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
     }
-    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {BOLTS} bolts {BOLT:g} times as thick as its walls"
+    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {_BOLTED}"
     return {
         "base": base,
         "A": STRIPS * outline,
@@ -325,7 +350,7 @@ def _foot(made: Unit, base: str) -> dict[str, Any] | None:
         "A_frame": 2 * 2 * beyond * made.width,
         "t_frame": FRAME * made.wall,
         "L_frame": beyond,
-        "rule": f"{rule}, 0.2 mm of air beside them; {on[base]}",
+        "rule": f"{rule}; {on[base]}",
     }
 
 

@@ -25,13 +25,15 @@ def new(
     fan: bool = False,
     cooler: bool = False,
     base: str = "concrete",
+    motor_heat: str | None = None,
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     path = out or Path(f"{name}.toml")
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
-    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, out=path, **chosen)
+    plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
+    rig = gh.new(name, **plate, **chosen, motor_heat=motor_heat, out=path)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
         console.note(note)
@@ -83,7 +85,8 @@ def _print_new(found: Mapping[str, Any]) -> None:
         print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
         print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
     print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
-    print(f"efficiency {100 * found['efficiency']:.2f} %, {100 * found['foot_share']:.0f} % of the heat by the foot")
+    by = "flange" if found["base"] == "flange" else "foot"
+    print(f"efficiency {100 * found['efficiency']:.2f} %, {100 * found['foot_share']:.0f} % of the heat by the {by}")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
 
 

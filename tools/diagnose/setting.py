@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.core.flatten import flatten
 from ...model.errors import SolveError
 from ...model.machines.roles import Roles
-from ...model.machines.spec import Spec, assemble
+from ...model.machines.spec import Spec
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.lubrication import lubricate, oils_of
 from ...scenarios.measured.nominal import Nominal
@@ -122,7 +121,7 @@ def ranges_of(
     Raises:
         SolveError: the rig cannot be run in any test
     """
-    flat = flatten(assemble(spec))
+    flat = spec.flat()
     ends = [f"{end}.{quantity}" for end in roles.ends for quantity in ("w", "tau")]
     shown = [roles.speed, roles.torque, roles.oil, *([roles.viscosity] if roles.viscosity else []), *ends]
     given = [s.reads for s in campaign.given]

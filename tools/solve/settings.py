@@ -10,7 +10,6 @@ from typing import Any
 from ...fmu.equations import effective
 from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel
-from ...model.core.flatten import flatten
 from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
@@ -81,7 +80,7 @@ def refuse_given(assignments: Settings, given: Iterable[str], duty: str) -> None
 
 def flat_of(scenario: Scenario) -> FlatModel:
     """The flat model of a scenario."""
-    return flatten(assemble(scenario.spec))
+    return scenario.spec.flat()
 
 
 def drive_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:

@@ -168,7 +168,7 @@ def verify(rig: RigLike | None = None, *, draw: Draw | None = None) -> Verificat
 
 def _tell_losses(verdict: Verdict) -> Verdict:
     """A verdict on an efficiency, with the losses over those that are published."""
-    if verdict.row.run != "new" or verdict.model is None or verdict.expected is None:
+    if verdict.row.unit != "%" or verdict.row.run != "new" or verdict.model is None or verdict.expected is None:
         return verdict
     return replace(verdict, why=f"losses {(100 - verdict.model) / (100 - verdict.expected):.2f} of those published")
 

@@ -1,6 +1,7 @@
 """Logs made by the rig itself: what was changed in a year is found, and where nothing was, nothing is."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,6 +18,8 @@ from made_logs import MACHINES, YEARS, differing, made
 
 #: Samples of one stretch: a week; seasons of the healthy logs and of that in question.
 N, PAST, ASKED = 1008, 4, 2
+#: Seed of a year with a worn cooler, the knob that has moved, by how much and since when.
+WORN = 200, "cooler: conductance", float(np.log(0.7)), 0.0
 
 
 def sensors() -> tuple[Sensor, ...]:
@@ -41,6 +44,7 @@ class Farm:
         self.machines = [differing(self.knobs, rng, MACHINES) for _ in range(3)]
         past = [[self.log(m, q / 4, 10 * m + q) for q in range(PAST)] for m in range(3)]
         joined = [self.joined(logs, f"machine {m}") for m, logs in enumerate(past)]
+        self.asked = cache(self._ask)
         self.fleet: Fleet = fleet(self.scenario, joined[:1], joined[1:], self.like)
 
     def log(self, machine: int, year: float, seed: int, change: np.ndarray | float = 0.0) -> Log:
@@ -53,7 +57,7 @@ class Farm:
         stretch = np.repeat(np.arange(len(logs)), [log.n for log in logs])
         return replace(logs[0], name=name, values=values, time=time, stretch=stretch, lines=np.arange(2, len(time) + 2))
 
-    def asked(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> LogDiagnosis:
+    def _ask(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> LogDiagnosis:
         """A third year of the first machine, in which a knob has moved in its last seasons."""
         change = np.zeros((ASKED, N, len(self.knobs)))
         if name:
@@ -80,7 +84,7 @@ def test_a_year_like_others_has_no_alarm(farm: Farm, seed: int) -> None:
 @pytest.mark.parametrize(
     ("name", "size", "since"),
     [
-        ("cooler: conductance", float(np.log(0.7)), 0.0),
+        WORN[1:],
         ("thermostat: set point", 4.0, 0.0),
         ("T_sump: offset", 3.0, 0.5),
     ],
@@ -103,7 +107,7 @@ def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: fl
 
 
 def test_what_logs_say_of_a_cause_is_free_of_its_prior(farm: Farm) -> None:
-    found = farm.asked(200, "cooler: conductance", float(np.log(0.7))).found
+    found = farm.asked(*WORN).found
     assert found.log_bayes_factor(["cooling.cooler"]) > 3
     assert found.log_bayes_factor(["cooling.cooler", "losses.windage"]) == found.log_bayes_factor(["cooling.cooler"])
     assert found.log_bayes_factor([]) == found.log_bayes_factor(["losses.windage"]) == 0
@@ -115,7 +119,7 @@ def test_what_logs_say_of_a_cause_is_free_of_its_prior(farm: Farm) -> None:
 
 
 def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(farm: Farm) -> None:
-    told = farm.asked(200, "cooler: conductance", float(np.log(0.7))).findings
+    told = farm.asked(*WORN).findings
     picture = told.pictures[0]
     days = np.array(told.rows.quantities[picture.quantity].values)
     before, after = np.array(picture.before), np.array(picture.after)

@@ -5,9 +5,7 @@ from functools import cache
 
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.roles import Roles
-from gearheat.model.machines.spec import assemble
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.result import Result
 from gearheat.model.run.steady import steady
@@ -41,7 +39,7 @@ class Case:
     def with_form(self, cause: str, form: int = 0) -> FlatModel:
         """The rig with the parts of a form."""
         f = self.cause(cause).forms[form]
-        return flatten(assemble(self.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+        return self.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS).flat()
 
 
 def value(result: Result, path: str) -> float:
@@ -55,7 +53,7 @@ def _case(name: str) -> Case:
     if name == "planetary":
         scenario = scenario.driven({"carrier": ("w", "tau")})
     roles, sensors = Roles.of(scenario.spec), sensors_of(scenario, Card())
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     found = steady(flat, scenario.operating_point)
     mid = {"w": abs(value(found, roles.speed)), "tau": abs(value(found, roles.torque)), "T": value(found, roles.oil)}
     mid |= {"nu": value(found, roles.viscosity) if roles.viscosity else 1e-4, "order": 0.5, "direction": 0.0}

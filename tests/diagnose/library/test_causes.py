@@ -6,8 +6,6 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
@@ -93,7 +91,7 @@ def test_extra_parts_of_all_causes_change_nothing(case, rig):
     c = case(rig)
     parts = {p.name: p for x in c.causes for f in x.forms for p in f.parts}
     nets = dict.fromkeys(net for x in c.causes for f in x.forms for net in f.connections)
-    flat = flatten(assemble(c.scenario.spec.with_parts(parts.values(), nets, EXTRA_PARTS)))
+    flat = c.scenario.spec.with_parts(parts.values(), nets, EXTRA_PARTS).flat()
     found = steady(flat, c.scenario.operating_point)
     for q in flat.states:
         assert found[q.name][0] == pytest.approx(c.nominal[q.name][0], abs=1e-4), q.name
@@ -117,7 +115,7 @@ def test_the_size_is_the_power_of_all_parts_at_the_reference(case, rig, cause):
         theta = {"P_ref": 0.01 * c.ranges.loss} | {s.name: float(s.at(0.0)) for s in form.shapes}
         row = Row(base=parameters(spec), sensors=dict(c.ranges.mid))
         values = {k: float(v) for k, v in form.values(theta, row).items()}
-        found = steady(flatten(assemble(spec)), {**c.scenario.operating_point, **values})
+        found = steady(spec.flat(), {**c.scenario.operating_point, **values})
         power = sum(found[f"{p.name}.P"][0] for p in form.parts)
         acting = {k.partition(".")[0] for k in values}
         assert acting <= {p.name for p in form.parts}
@@ -234,7 +232,7 @@ def test_moved_heat_warms_what_it_reaches_and_loses_none(case):
         ("heat of all losses, from the oil to the housing", "wall.T"),
     ):
         f = forms[name]
-        flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+        flat = c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS).flat()
         values = f.values({"shift": 0.2, "a": 0.0}, Row(base={}, sensors=sensors))
         found = steady(flat, {**c.scenario.operating_point, **{k: float(v) for k, v in values.items()}})
         assert found[warmer][0] - found["oil.T"][0] > c.nominal[warmer][0] - c.nominal["oil.T"][0] + 0.5, name
@@ -244,7 +242,7 @@ def test_moved_heat_warms_what_it_reaches_and_loses_none(case):
 def test_a_loss_of_the_couplings_is_seen_by_torque_and_not_by_heat(case):
     c = case("planetary")
     f = c.cause("losses.torque_only").forms[0]
-    flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+    flat = c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS).flat()
     theta = {"P_ref": 50.0} | {s.name: float(s.at(0.0)) for s in f.shapes}
     values = {k: float(v) for k, v in f.values(theta, Row(base={}, sensors={})).items()}
     found = steady(flat, {**c.scenario.operating_point, **values})
@@ -257,7 +255,7 @@ def test_a_thermostat_keeps_another_temperature(case):
     c = case("fzg_four_square")
     x = c.cause("cooling.thermostat")
     values = x.forms[0].values({"dT": 5.0}, Row(base={"thermostat.dT": 0.0}, sensors={}))
-    found = steady(flatten(assemble(c.scenario.spec)), {**c.scenario.operating_point, **values})
+    found = steady(c.scenario.spec.flat(), {**c.scenario.operating_point, **values})
     assert found["oil.T"][0] - c.nominal["oil.T"][0] == pytest.approx(5.0, abs=1.0)
 
 

@@ -4,8 +4,6 @@ import math
 from dataclasses import replace
 
 import pytest
-from gearheat.model.core.flatten import flatten
-from gearheat.model.machines.spec import assemble
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
@@ -75,7 +73,7 @@ def test_the_rig_file_says_how_uncertain_unless_the_card_does(case):
 @pytest.mark.parametrize("rig", ["planetary", "helical_two_stage", "cycloidal"])
 def test_more_convection_does_not_radiate_more(case, rig):
     c = case(rig)
-    flat = flatten(assemble(c.scenario.spec))
+    flat = c.scenario.spec.flat()
     convection = named(case, rig)["convection"]
     own = dict(zip([q.name for q in flat.parameters], flat.starts("parameter"), strict=True))
     factor = {path: own[path] * math.exp(0.2 * e) for path, e in convection.paths.items()}
@@ -96,7 +94,7 @@ def test_more_convection_does_not_radiate_more(case, rig):
 @pytest.mark.parametrize("rig", RIGS)
 def test_every_path_is_a_parameter_of_the_rig(case, rig):
     c = case(rig)
-    known = {q.name for q in flatten(assemble(c.scenario.spec)).parameters}
+    known = {q.name for q in c.scenario.spec.flat().parameters}
     for n in nuisances(c.roles, {}, {}):
         assert set(n.paths) <= known and n.sd > 0 and n.wide > 0
 
@@ -105,7 +103,7 @@ def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):
     c = case("helical_two_stage")
     films = thin_film_friction(Context(c.roles, c.ranges, c.sensors))
     assert films.sd == 0.0 and films.wide == 1.0
-    flat = flatten(assemble(c.scenario.spec.with_parts(films.parts, films.connections, EXTRA_PARTS)))
+    flat = c.scenario.spec.with_parts(films.parts, films.connections, EXTRA_PARTS).flat()
     none, some = (
         steady(flat, {**c.scenario.operating_point, **{path: math.exp(z) for path in films.paths}}) for z in (0.0, 0.5)
     )

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.roles import Roles
-from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
@@ -173,7 +172,7 @@ def test_same_input_same_bytes(made, acting) -> None:
 @pytest.mark.parametrize("rig", ["planetary", "helical_two_stage"])
 def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
     scenario = load(rig)
-    flat = flatten(assemble(scenario.spec))
+    flat = scenario.spec.flat()
     plant = Plant(flat, (), (), [q.name for q in flat.states])
     u = plant.u.copy()
     for name, value in scenario.operating_point.items():
@@ -190,6 +189,7 @@ def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
         none,
         none,
         np.zeros((1, 0)),
+        steady=True,
     )
     x0 = np.where([q.unit == "K" for q in flat.states], 293.15, flat.starts("state"))[None]
     found = march(plant, phases, x0, plant.p[None, None, None], np.ones((1, 1)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.checks import outlying, same_as_reference, too_small
+from made_tables import made
 
 
 def problems(read, rig, columns, card="") -> str:
@@ -30,12 +31,12 @@ def test_sun_torque_zero_or_far_off(read, planetary, factor):
     assert "the model" in found or "in all 12 rows" in found
 
 
-def test_speed_in_radians_per_second(read, planetary, helical):
-    for rig, columns, column in (
+def test_speed_in_radians_per_second(read, rig, planetary):
+    for name, columns, column in (
         ("planetary", planetary, "n_carrier_rpm"),
-        ("helical_two_stage", helical, "n_input_rpm"),
+        ("harmonic", made(rig("harmonic")), "n_wave_generator_rpm"),
     ):
-        found = problems(read, rig, times(columns, column, 0.10472))
+        found = problems(read, name, times(columns, column, 0.10472))
         assert "over the room, the model gives" in found and f"{column} (rpm)" in found
 
 

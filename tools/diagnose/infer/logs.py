@@ -8,9 +8,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from ....model.core.flatten import flatten
 from ....model.machines.roles import Roles
-from ....model.machines.spec import assemble
 from ....scenarios.measured.logs import Log
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
@@ -77,7 +75,7 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     known = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
     found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    plant = Plant(spec.flat(), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
     noise = []
     for q in plant.flat.states:

@@ -76,4 +76,5 @@ def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
         whole[:, 0].swapaxes(0, 1),
         whole[:, 1].swapaxes(0, 1),
         starts,
+        c.steady,
     )

@@ -23,6 +23,7 @@ typedef struct {
 /* What n runs go through: F phases in H rows, K steps and R readings in all; derivatives at S settings. */
 typedef struct {
   whole n, S, H, F, K, R;
+  whole steady;                               /* whether steady states are read, which no step before has a part in */
   const whole *row, *first, *read;            /* of each phase (F), (F + 1), of each step (K): number of the reading or -1 */
   const whole *paced;                         /* whether its row's pace is that of a phase (F) */
   const whole *wanted;                        /* whether derivatives by a knob are (knobs) */
@@ -242,6 +243,12 @@ static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   memcpy(s->on, R->on, sizeof s->on);
 }
 
+/* A long step of Euler's implicit method towards a steady state, which it meets whatever came before. */
+static void towards(Runs *R, lanes h, double end, whole read, int kept) {
+  memcpy(R->base, R->w, R->plant->nx * sizeof *R->base);
+  stage(R, h, end, read, kept);
+}
+
 /* A step of the phase to a share of it, h long in each lane. */
 static void step(Runs *R, lanes h, double begin, double end, whole read, int kept) {
   const Plant *P = R->plant;
@@ -253,8 +260,6 @@ static void step(Runs *R, lanes h, double begin, double end, whole read, int kep
     stage(R, h * GAMMA, begin + C[k] * (end - begin), k == STAGES - 1 ? read : -1, kept);
     for (whole i = 0; i < P->nx; i++) R->d[k * P->nx + i] = R->w[i] - R->base[i];
   }
-  for (whole i = 0; i < P->nw; i++)
-    EACH if (R->on[l] && P->thermal[i] != 0 && !(R->w[i][l] < RUNAWAY)) R->on[l] = R->fine[l] = 0;
 }
 
 /* All phases of the runs; one of no length is one step without time where it is read, else none. */
@@ -272,7 +277,10 @@ static void forward(Runs *R, double *y, int kept) {
       EACH h[l] = (D->share[k] - begin) * D->length[R->run[l] * D->F + R->phase];
       EACH R->on[l] = R->fine[l] && (h[l] > 0 || D->read[k] >= 0);
       if (!any(R->on)) continue;
-      step(R, h, begin, D->share[k], D->read[k], kept);
+      if (D->steady) towards(R, h, D->share[k], D->read[k], kept && D->read[k] >= 0);
+      else step(R, h, begin, D->share[k], D->read[k], kept);
+      for (whole i = 0; i < P->nw; i++)
+        EACH if (R->on[l] && P->thermal[i] != 0 && !(R->w[i][l] < RUNAWAY)) R->on[l] = R->fine[l] = 0;
       if (D->read[k] < 0) continue;
       call(R, P->readings, 0, R->w, R->direct, 0);
       EACH if (R->on[l])
@@ -384,7 +392,7 @@ static void backward(Runs *R, const Found *found) {
   for (whole n = R->stages - 1; n >= 0; n--) {
     const whole read = R->stage[n].read;
     if (read >= 0 && read * P->shown < from) from = read * P->shown;
-    back(R, found, R->stage + n, (int)(n % STAGES), from);
+    back(R, found, R->stage + n, D->steady ? STAGES - 1 : (int)(n % STAGES), from);
   }
   EACH for (whole g = 0; g < P->given && R->fine[l]; g++) {
     double *local = found->local + (R->run[l] * P->given + g) * D->H * width;

@@ -1,7 +1,7 @@
 """Dwells of many tests, one after the other, with exact sensitivities: an implicit Runge-Kutta method of third order.
 
 The discrete solution is differentiated, so its sensitivities are exact at any step. A steady state is the end of a very
-long dwell: the last steps are Newton's. The march itself is in C.
+long dwell by Euler's implicit method: the last steps are Newton's. The march itself is in C.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ class Phases:
         start: by how much the start temperatures follow the given readings of the first row (N, given)
         local0, local1: weight of the reading of each given sensor in each row of the test in the inputs at begin and
             end of each phase (N, F, given, H)
+        steady: whether what is read are steady states
     """
 
     length: np.ndarray
@@ -41,6 +42,7 @@ class Phases:
     local0: np.ndarray
     local1: np.ndarray
     start: np.ndarray
+    steady: bool
 
 
 @dataclass(frozen=True)
@@ -101,8 +103,8 @@ def march(
     result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
     chosen = range(len(plant.knobs)) if wanted is None else wanted
     duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(chosen)))
-    places = [ctypes.byref(r) for r in (plant.record, duty, result)]
-    share_rows(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
+    places, run = [ctypes.byref(r) for r in (plant.record, duty, result)], library().march
+    share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
     return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if turned else None)
 
 
@@ -118,6 +120,7 @@ def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wante
         F=len(phases.row),
         K=len(read),
         R=len(after),
+        steady=int(phases.steady),
         row=np.array(phases.row, dtype=np.int64),
         first=ends.astype(np.int64),
         read=read,
