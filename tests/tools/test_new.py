@@ -29,13 +29,24 @@ PLATES = {
 }
 
 
+@pytest.fixture(scope="module")
+def known(tmp_path_factory):
+    """Folder of the rigs that are made, and what was told of each by name."""
+    return tmp_path_factory.mktemp("made"), {}
+
+
 @pytest.fixture
-def made(gearheat, tmp_path):
+def made(gearheat, known):
+    """The rig file of a name plate, and what was told of it; made once."""
+    folder, told = known
+
     def make(name):
         stages, ratio, power = PLATES[name]
-        path = tmp_path / f"{name}.toml"
-        plate = ("--stages", stages, "--ratio", ratio, "--power", power, "--speed", "1450 1/min")
-        return path, gearheat("new", name, *plate, "--oil", "ISO VG 220", "-o", path, "--json", "-")
+        path = folder / f"{name}.toml"
+        if name not in told:
+            plate = ("--stages", stages, "--ratio", ratio, "--power", power, "--speed", "1450 1/min")
+            told[name] = gearheat("new", name, *plate, "--oil", "ISO VG 220", "-o", path, "--json", "-")
+        return path, told[name]
 
     return make
 
@@ -195,13 +206,13 @@ def test_a_housing_gives_off_what_the_standards_expect(made, gearheat, name):
     assert 10 < answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 22
 
 
-def test_a_fan_without_a_shaft_is_named(made, gearheat):
+def test_a_fan_without_a_shaft_is_named(made, gearheat, tmp_path):
     path, _ = made("spur")
     fan = '[part.fan]\ntype = "ShaftFan"\nk_v = "0.02 m"\nk = "1e-5 N.m.s2"\nsource = "assumed: small"\n\n'
     text = path.read_text("utf-8").replace("[part.room]", f"{fan}[part.room]")
     nets = 'air = ["room.air", "fan.room"]\nblown = ["fan.air", "cooling.air"]'
-    path.write_text(text.replace('air = ["room.air", "cooling.air"]', nets), "utf-8")
-    answer = gearheat("steady", path)
+    (blown := tmp_path / "blown.toml").write_text(text.replace('air = ["room.air", "cooling.air"]', nets), "utf-8")
+    answer = gearheat("steady", blown)
     assert answer.code == 2
     assert "fan.shaft is connected to nothing: no shaft is there." in answer.err
 
