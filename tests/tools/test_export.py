@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
+from for_each import thin
 from gearheat.fmu import compiling
 from gearheat.fmu.play import Player
 from gearheat.fmu.related import FOLDER, PARAMETERS
@@ -112,8 +113,10 @@ def test_both_shafts_with_a_given_speed_start_at_the_same_operating_point_and_st
 
 @pytest.mark.parametrize(
     ("rig", "options"),
-    [("planetary", options) for options, _ in VARIANTS.values()]
-    + [("helical_two_stage", options) for options in ((), ("--drive", "output"), ("--given", "torque"))],
+    thin(
+        [("planetary", options) for options, _ in VARIANTS.values()]
+        + [("helical_two_stage", options) for options in ((), ("--drive", "output"), ("--given", "torque"))]
+    ),
 )
 def test_every_variant_runs_for_hours_at_its_defaults(gearheat, tmp_path, rig, options):
     """A speed that is given holds while the machine warms up; where torques are given nothing moves from the start."""

@@ -7,6 +7,7 @@ import re
 
 import casadi as ca
 import pytest
+from for_each import thin
 from gearheat.model.parts import TwoGearSupport
 from gearheat.model.units import si_of
 from gearheat.scenarios.entries import catalogue
@@ -151,7 +152,7 @@ def test_bearings_that_reach_below_the_level_drag(made, name, count):
     assert all(p.values["height"] - p.values["D"] / 2 < level for p in low)
 
 
-@pytest.mark.parametrize("name", PLATES)
+@pytest.mark.parametrize("name", thin(PLATES, 2))
 def test_oil_side_coefficients_are_near_those_of_constants(made, gearheat, name):
     """ISO/TR 14179-2 has 200 W/(m2.K) at the walls; at rest a tenth of it is left."""
     path, _ = made(name)
@@ -198,7 +199,7 @@ def test_a_motor_at_the_housing_heats_it(gearheat, tmp_path):
         assert answer.code == 2 and words in answer.err
 
 
-@pytest.mark.parametrize("name", PLATES)
+@pytest.mark.parametrize("name", thin(PLATES, 1))
 def test_a_housing_gives_off_what_the_standards_expect(made, gearheat, name):
     """10 to 14 W/(m2.K) in a small room without draught, 17 to 20 in a hall with 1.4 m/s, more if 80 K hotter."""
     path, answer = made(name)
