@@ -143,12 +143,12 @@ of = { i = "ratio" }
 path = "i / i"
 
 [[row]]
-name = "area that holds 50 degC, over 0.1 m2"
+name = "area that holds 40 degC, over 0.1 m2"
 where = "by construction"
 published = "more"
 run = "design"
 free = "cooling.A"
-target = "oil.T=50 degC"
+target = "oil.T=40 degC"
 path = "cooling.A > 0.1"
 """
 WRONG = (
