@@ -13,13 +13,13 @@ from typing import Any
 
 from .document import ABOUT, read_toml
 
-_ROOT = Path(str(files("gearheat.scenarios")))
+ROOT = Path(str(files("gearheat.scenarios")))
 
 #: Folder of the shipped rigs, one folder each.
-RIGS = _ROOT / "rigs"
+RIGS = ROOT / "rigs"
 
 #: Folder of the catalogues.
-FOLDER = _ROOT / "catalogue"
+FOLDER = ROOT / "catalogue"
 
 #: Kind of entry, as it is called in a part's table -> its file.
 FILES: Mapping[str, str] = {

@@ -44,8 +44,8 @@ class SensorTable(Strict):
 
     reads: str = Field(description='path in the model, for example "oil.T"')
     column: str | None = Field(None, description="column of a measured table; the sensor's own name if left out")
-    kind: Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power"] | None = Field(
-        None, description='what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed" or "power"'
+    kind: Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency"] | None = Field(
+        None, description='what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power" or "efficiency"'
     )
     role: Literal["given", "read"] | None = Field(None, description='"given" drives the model, "read" is compared')
     unit: str | None = Field(None, description='unit of the column, for example "degC"')

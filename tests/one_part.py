@@ -102,7 +102,7 @@ EXAMPLES: dict[str, dict] = {
     "DrumOil": OIL | dict(beta=0.7, r=0.15, L=0.25, c_p=2000.0),
     "Grease": OIL,
     "OilSump": OIL | dict(V=1e-3, c_p=2000.0),
-    "OilPump": dict(V_disp=1e-5, eta_v=0.9, eta_m=0.8),
+    "OilPump": dict(V_disp=1e-5, eta_v=0.9, eta_m=0.8, C_s=1e-8),
     "OilFilter": dict(dp_ref=1e5, m_flow_ref=0.1, nu_ref=1e-4, p_bypass=3e5),
     "OilNozzle": dict(d=2e-3, C_d=0.7),
     "GearJet": dict(d=2e-3, C_d=0.7, r=0.08, height=6.75e-3, A=0.02, along=0.9, c_p=2000.0),

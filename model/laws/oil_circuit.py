@@ -99,3 +99,18 @@ def pump_loss_torque(dp: Num, D: Num, eta_m: Num) -> Num:
         eta_m: mechanical efficiency [1]
     """
     return (1 / eta_m - 1) * D * smooth_abs(dp, P_WIDTH)
+
+
+@law(source="Merritt1967", where="laminar leakage of a positive-displacement pump, by its displacement", verified=False)
+def pump_slip(dp: Num, D: Num, eta_oil: Num, C_s: Num) -> Num:
+    r"""Volume flow rate that leaks back inside a positive-displacement pump [m3/s], with the sign of the pressure.
+
+    .. math:: Q_s = C_s \frac{D \Delta p}{\eta}
+
+    Args:
+        dp: pressure that the pump adds [Pa]
+        D: displacement per radian [m3]
+        eta_oil: dynamic viscosity [Pa.s]
+        C_s: slip coefficient [1]
+    """
+    return C_s * D * dp / eta_oil

@@ -302,13 +302,13 @@ def _find_roles(nets: _Nets) -> Roles:
     oil = nets.net.get(f"{nets.bath}.heat", -1)
     conductors = nets.of("conductor", "jet")
     ends = {c: nets.heat_nets([c]) for c in conductors}
-    foundation = tuple(c for c in conductors if ends[c] & air)
-    kept_by = tuple(c for c in conductors if ends[c] & kept and c not in foundation)
-    inner = [c for c in conductors if c not in (*foundation, *kept_by)]
+    exchangers = tuple(c for c in conductors if faults_of(nets.classes[c]).get("cooling.cooler"))
+    foundation = tuple(c for c in conductors if ends[c] & air and c not in exchangers)
+    kept_by = tuple(c for c in conductors if ends[c] & kept and c not in (*foundation, *exchangers))
+    inner = [c for c in conductors if c not in (*foundation, *kept_by, *exchangers)]
     oil_side = tuple(c for c in inner if oil in ends[c])
     between = tuple(c for c in inner if oil not in ends[c])
     contacts = tuple(c for c in between if "cooling.contact" in faults_of(nets.classes[c]))
-    exchangers = tuple(c for c in between if faults_of(nets.classes[c]).get("cooling.cooler"))
     surfaces = nets.of("surface")
     outer = (nets.heat_nets([*surfaces, *foundation]) - air) - {oil}
     inside, outside = nets.inside_outside(between, outer)
@@ -336,7 +336,7 @@ def _find_roles(nets: _Nets) -> Roles:
         coolers=(*kept_by, *nets.of("cooler"), *exchangers),
         oil_side=oil_side,
         contacts=contacts,
-        walls=tuple(c for c in between if c not in (*contacts, *exchangers)),
+        walls=tuple(c for c in between if c not in contacts),
         inside=inside,
         outside=outside,
         thermostats=keeping,

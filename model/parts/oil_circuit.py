@@ -19,6 +19,7 @@ from ..laws.oil_circuit import (
     laminar_pressure,
     orifice_flow,
     pump_loss_torque,
+    pump_slip,
     stream_conductance,
 )
 from ..laws.smooth import Num, friction_sign, smooth_positive, smooth_sign
@@ -27,6 +28,8 @@ from .ports import Flange, HeatPort, Lubricant, OilPort, Opening
 
 #: Temperature [K] at which the enthalpy is zero.
 T_ZERO = 273.15
+#: Power [W] of a pump below which its efficiency fades.
+P_REST = 1.0
 #: Mass flow rate [kg/s] that counts as round-off of a circuit.
 ROUND_OFF = 1e-9
 
@@ -107,9 +110,15 @@ class OilPump(OilLine):
     """A positive-displacement pump on a shaft; all its power goes into the oil.
 
     It turns backwards as well, and moves its oil against any pressure: the bypass of a filter keeps it low in the cold.
+    What leaks back through its gaps stays in the pump with its heat: it takes from the efficiency, not from the heat.
     """
 
     role: ClassVar[str] = "pump"
+    faults: ClassVar[Faults] = {
+        "cooling.oil_flow": {"eta_v": 1.0},
+        "losses.pump_power": {"eta_m": -1.0},
+        "losses.pump_leak": {"C_s": 1.0},
+    }
 
     shaft = Flange(must_meet=True)
     lubricant = Lubricant()
@@ -117,8 +126,10 @@ class OilPump(OilLine):
     V_disp = Parameter("m3", "displacement per revolution", nominal=1e-5, above=0.0)
     eta_v = Parameter("1", "volumetric efficiency", above=0.0, at_most=1.0)
     eta_m = Parameter("1", "mechanical efficiency", above=0.0, at_most=1.0)
+    C_s = Parameter("1", "slip coefficient: oil that leaks back inside", default=0.0, at_least=0.0)
     dp = Output("Pa", "pressure that it adds", nominal=1e5)
     P = Output("W", "power from the shaft into the oil", nominal=100.0)
+    eta = Output("1", "efficiency: hydraulic power, less what leaks back, over power from the shaft; 0 at rest")
 
     def resistance(self) -> Equation:
         """The flow follows the speed."""
@@ -136,6 +147,9 @@ class OilPump(OilLine):
         yield equation("pressure", self.dp, self.b.p - self.a.p)
         yield equation("torque", self.shaft.tau, D * self.dp + friction)
         yield equation("power", self.P, self.shaft.tau * w)
+        oil = self.lubricant
+        used = self.m_flow / oil.rho - pump_slip(self.dp, D, oil.nu * oil.rho, self.C_s)
+        yield equation("efficiency", self.eta, self.dp * used * self.P / (self.P**2 + P_REST**2))
         yield from super().equations()
 
 

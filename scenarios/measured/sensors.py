@@ -38,7 +38,13 @@ SI: Mapping[str, str] = _TABLES["units"]
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
 KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
-NAMES: Mapping[str, tuple[str, str]] = {"w": ("n", "rpm"), "tau": ("T", "Nm"), "T": ("T", "C"), "P": ("P", "W")}
+NAMES: Mapping[str, tuple[str, str]] = {
+    "w": ("n", "rpm"),
+    "tau": ("T", "Nm"),
+    "T": ("T", "C"),
+    "P": ("P", "W"),
+    "eta": ("eta", "pct"),
+}
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,9 @@ def default_card(scenario: Scenario, prior_sd: Mapping[str, float]) -> Card:
 
 def _channel(sensor: Sensor) -> Channel:
     """Accuracies in units that a person writes."""
+    if SI[sensor.kind] == "1":
+        repeat, offset = (f"{100 * sd:.4g} percent" for sd in (sensor.repeat_sd, sensor.offset_sd))
+        return Channel(repeat_sd=repeat, offset_sd=offset)
     unit = "K (difference)" if SI[sensor.kind] == "K" else SI[sensor.kind]
     return Channel(repeat_sd=text(sensor.repeat_sd, unit, 4), offset_sd=text(sensor.offset_sd, unit, 4))
 

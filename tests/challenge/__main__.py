@@ -6,6 +6,7 @@ To be run in a checkout. An interrupted run with a folder (`-o`) goes on where i
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,6 +19,7 @@ from gearheat.tools.show import console
 
 from .bench import run, tasks
 from .hide import KINDS
+from .names import names
 from .printing import show
 from .scoring import Outcome, report
 from .sheets import MAKERS, POOLED
@@ -89,4 +91,8 @@ def _folder(out: Path | None) -> Iterator[Path]:
 
 
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["names"]:
+        sys.argv.pop(1)
+        app = typer.Typer(add_completion=False, rich_markup_mode=None)
+        app.command()(console.guard(names))
     app(prog_name="python -m tests.challenge")

@@ -50,6 +50,7 @@ def test_all_are_listed() -> None:
         "harmonic",
         "harmonic_printed",
         "helical_two_stage",
+        "hydraulic",
         "planetary",
         "rv_stage",
         "wind_turbine",

@@ -21,6 +21,7 @@ from .tools.diagnose.api import (
     diagnose as diagnose,
     plan as plan,
 )
+from .tools.diagnose.campaigns import CampaignFiles as CampaignFiles, campaign as campaign
 from .tools.export.export import export as export, play as play
 from .tools.export.fmu import Exported as Exported
 from .tools.films.film import FilmTable as FilmTable, film as film

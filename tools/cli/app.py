@@ -49,6 +49,7 @@ PANELS = {
         diagnosis.diagnose,
         diagnosis.plan,
         diagnosis.card,
+        diagnosis.campaign,
         measured.replay,
     ),
     "Films, and proof": (developers.film, developers.verify, developers.verify_contact),

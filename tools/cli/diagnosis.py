@@ -98,3 +98,27 @@ def card(
         console.note(f"wrote {out}")
     if json is not None or out is None:
         console.answer(found.as_dict(), json, lambda: print(found.as_toml(), end=""))
+
+
+def campaign(
+    name: str,
+    folder: Path,
+    out: Path = Path("campaign"),
+    case: str = "",
+    quick: bool = False,
+    json: str | None = None,
+) -> None:
+    """A campaign that others published: checks the files you downloaded, writes card and tables, and diagnoses them."""
+    console.use_one_thread()
+    made = gh.campaign(name, folder, out, case=case)
+    known = made.as_dict()
+    console.note(f"{made.title}. {known['source']}; {known['licence']}. Known: {known['known']}")
+    findings = {}
+    for one, paths in made.cases.items():
+        console.note(f"{one}: {', '.join(map(str, paths))}")
+        findings[one] = made.diagnose(one, quick=quick)
+        if json != "-":
+            print(f"{one}\n{findings[one].text(width=console.screen_width())}", end="")
+    if json is not None:
+        cases = {one: found.as_dict() for one, found in findings.items()}
+        console.answer({**known, "findings": cases}, json, lambda: None)

@@ -15,9 +15,16 @@ KINDS = {
     "torque": ("N.m", 1.0, "torque"),
     "speed": ("rpm", 30 / np.pi, "speed"),
     "power": ("W", 1.0, "power"),
+    "efficiency": ("%", 100.0, "efficiency"),
 }
 #: Unit of a result -> ending of a channel's name, and of the name of a change of it.
-ENDINGS = {"degC": ("_C", "_K"), "N.m": ("_Nm", "_Nm"), "W": ("_W", "_W"), "rpm": ("_rpm", "_rpm")}
+ENDINGS = {
+    "degC": ("_C", "_K"),
+    "N.m": ("_Nm", "_Nm"),
+    "W": ("_W", "_W"),
+    "rpm": ("_rpm", "_rpm"),
+    "%": ("_pct", "_pct"),
+}
 
 
 def unit(sensor: Sensor) -> str:

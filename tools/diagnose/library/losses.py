@@ -16,7 +16,13 @@ from .forms import Context, Regime, weighed
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
 #: Parts whose whole friction is larger or smaller, whatever they carry.
-RUBBING = ("losses.bearing_friction", "losses.pair_preload", "losses.clutch_drag")
+RUBBING = (
+    "losses.bearing_friction",
+    "losses.pair_preload",
+    "losses.clutch_drag",
+    "losses.pump_power",
+    "losses.pump_leak",
+)
 
 
 def causes(at: Context) -> Iterator[Cause]:

@@ -19,6 +19,8 @@ NAMES = {
     "losses.bearing_friction": "friction of the bearings",
     "losses.pair_preload": "preload of a pair of bearings",
     "losses.clutch_drag": "drag of a clutch or brake",
+    "losses.pump_power": "power of the pump",
+    "losses.pump_leak": "leak of the pump",
     "losses.seal_drag": "seal drag",
     "losses.mesh_friction": "friction of the teeth",
     "losses.mesh_direction": "friction of the teeth in one direction",
@@ -52,6 +54,7 @@ KINDS = {
     "torque": "torque transducer",
     "speed": "speed sensor",
     "power": "power meter",
+    "efficiency": "efficiency reading",
 }
 #: Faults of a sensor.
 FAULTS = {
