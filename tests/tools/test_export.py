@@ -14,7 +14,9 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
+from for_each import thin
 from gearheat.fmu import compiling
+from gearheat.fmu.equations import fix
 from gearheat.fmu.play import Player
 from gearheat.fmu.related import FOLDER, PARAMETERS
 from gearheat.model.errors import FmuError
@@ -112,8 +114,10 @@ def test_both_shafts_with_a_given_speed_start_at_the_same_operating_point_and_st
 
 @pytest.mark.parametrize(
     ("rig", "options"),
-    [("planetary", options) for options, _ in VARIANTS.values()]
-    + [("helical_two_stage", options) for options in ((), ("--drive", "output"), ("--given", "torque"))],
+    thin(
+        [("planetary", options) for options, _ in VARIANTS.values()]
+        + [("helical_two_stage", options) for options in ((), ("--drive", "output"), ("--given", "torque"))]
+    ),
 )
 def test_every_variant_runs_for_hours_at_its_defaults(gearheat, tmp_path, rig, options):
     """A speed that is given holds while the machine warms up; where torques are given nothing moves from the start."""
@@ -375,9 +379,8 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     assert answer.code == 0, answer.err
     start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(start["rotor.w"]) == pytest.approx(1450 * np.pi / 30)
-    load_ = -float(start["output.tau"])  # its friction falls with the speed: torques alone hold a part of the load
-    assert load_ in (590.0, 0.75 * 590.0, 0.5 * 590.0, 0.25 * 590.0)
-    assert float(start["input.tau"]) == pytest.approx(load_ / 12.56, rel=0.06)
+    assert -590 <= float(start["output.tau"]) < -100  # of the load, as much as friction holds the speed at
+    assert float(start["input.tau"]) == pytest.approx(-float(start["output.tau"]) / 12.56, rel=0.06)
 
 
 @pytest.mark.parametrize(
@@ -410,7 +413,11 @@ def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
     say = ("--author", "A. Maker, Example Ltd", "--model-version", "1.2", "--date", "2026-01-31T12:00:00Z")
-    found = gearheat("export", "helical_two_stage", "-o", path, *keep, *say, "--extras", extras, "--json", "-").json
+    words = ("helical_two_stage", "-o", path, *keep, "--constant", "stage_1", *say, "--extras", extras)
+    found = gearheat("export", *words, "--json", "-").json
+    flat = flat_of(load("helical_two_stage"))
+    follows = {n for n, those in flat.derived.items() if any(t.startswith("stage_1.") for t in those)}
+    assert follows and "stage_1.z_1" in found["constants"] and "stage_2.z_1" in found["parameters"]
     beside = [place.read_text(encoding="utf-8") for place in sorted(extras.rglob("*.ssv"))]
     assert len(beside) > 20 and not any("provenance" in text for text in beside)
     assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
@@ -424,8 +431,18 @@ def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
         assert not [name for name in file.namelist() if name.startswith("sources/")]
         for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
             assert b"assumed: standard module" not in file.read(name), name
+        contents = [file.read(name) for name in file.namelist()] + [text.encode() for text in beside]
+        told = {n for n in (*found["constants"], *follows) if any(n.encode() in content for content in contents)}
+        assert not told and any(b"stage_2.z_1" in content for content in contents)
     with Player(path) as player:
         assert player.run({}, 600, 60.0).time[-1] == 600
+    fixed = fix(flat, found["constants"])
+    x, u = flat.starts("state"), flat.starts("input")
+    whole, same = (evaluate_at(each, x, u, each.starts("parameter")) for each in (flat, fixed))
+    assert same["ode"] == pytest.approx(whole["ode"], rel=1e-12)
+    y = dict(zip((q.name for q in flat.outputs), whole["y"], strict=True))
+    assert same["y"] == pytest.approx([y[q.name] for q in fixed.outputs], rel=1e-9, abs=1e-9)
+    assert gearheat("export", "helical_two_stage", "-o", path, "--constant", "stage_1.z1").code == 2
 
 
 def test_no_licence_is_told_that_was_not_given(gearheat, tmp_path):
