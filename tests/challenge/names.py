@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -33,6 +34,8 @@ HERE = Path(__file__).parent
 STORED, PAGE = HERE / "names.json", HERE.parents[1] / "tools" / "docs" / "pages" / "trust" / "names.md"
 #: Probability that the answers of a set have together.
 LEVEL = 0.9
+#: Columns of the page.
+WIDTH = 120
 #: Readings of a tenth of the healthy stage: every tenth reading, or a stretch of them, in which pump and valve differ.
 CHUNKS = 12
 #: Conductance of the cooler at 3 % over the healthy one by the makers' cooling power, TS3 and the room.
@@ -224,7 +227,32 @@ def render(stored: Mapping[str, Any]) -> str:
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string((HERE / "names.md.jinja").read_text(encoding="utf-8"))
     by = {result["name"]: result for result in stored["results"]}
-    return template.render(results=stored["results"], by=by, exp=np.exp) + "\n"
+    tenths, stretches = ([f"healthy {words} {k}" for k in range(1, 11)] for words in ("tenth", "stretch"))
+    page = template.render(results=stored["results"], by=by, exp=np.exp, tenths=tenths, stretches=stretches)
+    return "\n".join(line for text in page.splitlines() for line in _wrapped(text)) + "\n"
+
+
+def _wrapped(text: str) -> list[str]:
+    """A line of a page; tables stay as they are."""
+    return [text] if text.startswith("|") else textwrap.wrap(text, WIDTH, break_long_words=False) or [""]
+
+
+def draw(path: Path) -> None:
+    """The readings of the hydraulic rig: both stages of the cooler in the order of time.
+
+    Args:
+        path: picture to write
+    """
+    from matplotlib.figure import Figure
+
+    case = adapter("hydraulic").cases(RIGS / "hydraulic", "cooler at 3 %")[0]
+    figure = Figure(figsize=(7, 3), layout="constrained")
+    axes = figure.subplots()
+    for name in ("TS1_C", "TS2_C", "TS3_C", "TS4_C", "T_room_C"):
+        axes.plot(np.r_[case.asked[name], np.nan, case.reference[name]], "o-", ms=3, label=name.removesuffix("_C"))
+    axes.set(xlabel="reading: cooler at 3 %, then at 100 %", ylabel="degC")
+    axes.legend(loc="upper right", ncols=5, fontsize=8)
+    figure.savefig(path, metadata={"Date": None})
 
 
 def names(
@@ -248,3 +276,4 @@ def names(
     if not only:
         out.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
         page.write_text(render(stored), encoding="utf-8")
+        draw(page.with_suffix(".svg"))
