@@ -21,6 +21,7 @@ from typing import Annotated, Any
 import jinja2
 import numpy as np
 import typer
+from gearheat.model.errors import GearheatError
 from gearheat.scenarios.measured.adapter import Columns, adapter, write_csv
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.diagnose.api import diagnose
@@ -170,11 +171,15 @@ def judge(c: Campaign, seed: int = 0) -> dict[str, Any]:
         asked, reference, *siblings = paths
         more: dict[str, Any] = {"card": card, "quick": c.options["quick"], "seed": seed}
         if "point" in c.asked:
-            found = diagnose(asked, c.rig, reference=reference, **more)
+            given: dict[str, Any] = {"data": asked, "reference": reference}
         else:
-            found = diagnose(None, c.rig, logs=asked, reference_logs=reference, sibling_logs=siblings, **more)
+            given = {"data": None, "logs": asked, "reference_logs": reference, "sibling_logs": siblings}
+        try:
+            found = diagnose(rig=c.rig, **given, **more).as_dict()
+        except GearheatError:  # a year in which the machine stands
+            found = {"verdict": "refused", "answers": [], "causes": [], "hypotheses": []}
     seconds = time.process_time() - began
-    return score(c, found.as_dict()) | {"seconds": seconds, "rivals": rivals(c.asked, c.reference, c.channel, c.given)}
+    return score(c, found) | {"seconds": seconds, "rivals": rivals(c.asked, c.reference, c.channel, c.given)}
 
 
 def score(c: Campaign, found: Mapping[str, Any]) -> dict[str, Any]:
@@ -191,7 +196,7 @@ def score(c: Campaign, found: Mapping[str, Any]) -> dict[str, Any]:
         total += probability
         if total >= LEVEL:
             break
-    leading = answers[0][1] if found["verdict"] != "consistent" else []
+    leading = answers[0][1] if found["verdict"] not in ("consistent", "refused") else []
     causes = {cause["id"]: cause for cause in found["causes"]}
     size = next(iter(causes[leading[0]]["parameters"]), None) if leading and leading[0] in causes else None
     gain = found.get("gain") or {}
@@ -228,13 +233,17 @@ def render(stored: Mapping[str, Any]) -> str:
     template = environment.from_string((HERE / "names.md.jinja").read_text(encoding="utf-8"))
     by = {result["name"]: result for result in stored["results"]}
     tenths, stretches = ([f"healthy {words} {k}" for k in range(1, 11)] for words in ("tenth", "stretch"))
-    page = template.render(results=stored["results"], by=by, exp=np.exp, tenths=tenths, stretches=stretches)
-    return "\n".join(line for text in page.splitlines() for line in _wrapped(text)) + "\n"
+    case = adapter("hydraulic").cases(RIGS / "hydraulic", "cooler at 3 %")[0]
+    rise = {name: float(np.mean(case.asked[name]) - np.mean(case.reference[name])) for name in ("TS1_C", "T_room_C")}
+    rise["healthy"] = float(np.ptp(case.reference["TS1_C"]))
+    known = {"tenths": tenths, "stretches": stretches, "rise": rise, "exp": np.exp}
+    page = template.render(results=stored["results"], by=by, **known)
+    return "\n\n".join(map(_wrapped, page.split("\n\n"))).strip() + "\n"
 
 
-def _wrapped(text: str) -> list[str]:
-    """A line of a page; tables stay as they are."""
-    return [text] if text.startswith("|") else textwrap.wrap(text, WIDTH, break_long_words=False) or [""]
+def _wrapped(text: str) -> str:
+    """A paragraph of a page; tables stay as they are."""
+    return text if "|" in text else textwrap.fill(" ".join(text.split()), WIDTH, break_long_words=False)
 
 
 def draw(path: Path) -> None:
@@ -270,10 +279,11 @@ def names(
     with ProcessPoolExecutor(jobs) as pool:
         for result in pool.map(run, todo):
             results.append(result)
+            if not only:
+                out.write_text(json.dumps({"seed": seed, "results": results}, indent=1, default=float) + "\n")
             shown = [f"{' + '.join(a['causes']) or 'nothing'} {a['probability']:.2f}" for a in result["answers"]]
             console.note(f"{len(results)}/{len(todo)} {result['name']}: {result['verdict']}: {', '.join(shown)}")
     stored = json.loads(json.dumps({"seed": seed, "results": results}, default=float))
     if not only:
-        out.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
         page.write_text(render(stored), encoding="utf-8")
         draw(page.with_suffix(".svg"))
