@@ -55,3 +55,15 @@ def one_of_each(cases: Iterable[T], kind: Callable[[T], Hashable]) -> list[T]:
     for case in every:
         groups.setdefault(kind(case), []).append(case)
     return [group[k % len(group)] for k, group in enumerate(groups.values())]
+
+
+def thin(cases: Iterable[T], first: int = 0, apart: int = 3) -> list[T]:
+    """The cases, or some of them: checks that take long share them out among each other.
+
+    Args:
+        cases: all of them
+        first: number of the first that is kept
+        apart: distance to the next
+    """
+    every = list(cases)
+    return every if ALL else every[first::apart]

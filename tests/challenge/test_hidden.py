@@ -86,6 +86,6 @@ def test_hidden_effects_are_named_or_in_the_set_and_gross_readings_named(tmp_pat
 
 @pytest.mark.parametrize("name", list(CAMPAIGNS) if ALL else ["harmonic"])
 def test_clean_campaigns_raise_few_alarms(name: str, tmp_path: Path) -> None:
-    """One alarm in twenty is what is asked for: two in three have a chance of less than one in a hundred."""
-    outcomes = [diagnose_hidden(tmp_path / str(seed), name, None, seed) for seed in range(20 if ALL else 3)]
+    """One alarm in twenty is what is asked for: two in two have a chance of less than one in a hundred."""
+    outcomes = [diagnose_hidden(tmp_path / str(seed), name, None, seed) for seed in range(20 if ALL else 2)]
     assert sum(o is None or o.alarm for o in outcomes) <= (2 if ALL else 1)

@@ -37,7 +37,7 @@ def block(language: str) -> str:
 
 def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch, capsys) -> None:
     sheet = partial(draw_steady, machine="helical_two_stage")
-    make_case(sheet, 3, 7, 0, tmp_path / "made", kind="single", cause="losses.churning", apart=False)
+    make_case(sheet, 3, 7, 2, tmp_path / "made", kind="single", cause="losses.churning", apart=False)
     with (tmp_path / "made" / "case" / "DATA.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     head, *examples = block("csv").splitlines()

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from itertools import zip_longest
+from itertools import product, zip_longest
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
+from for_each import one_of_each, thin
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
@@ -99,8 +100,7 @@ def test_every_parameter_can_be_changed(name: str) -> None:
     assert changes(flat, 1e-3).keys() == {q.name for q in flat.parameters}
 
 
-@pytest.mark.parametrize("share", [1e-3, 0.1])
-@pytest.mark.parametrize("name", RIGS)
+@pytest.mark.parametrize(("name", "share"), one_of_each(product(RIGS, (1e-3, 0.1)), lambda case: case[0]))
 def test_a_changed_parameter_is_a_changed_rig_file(name: str, share: float) -> None:
     """Also for all that follows from it, at the same states; what the rig file refuses, no run begins with."""
     here = rig(name)
@@ -115,7 +115,7 @@ def test_a_changed_parameter_is_a_changed_rig_file(name: str, share: float) -> N
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-9), values
 
 
-@pytest.mark.parametrize("name", RIGS)
+@pytest.mark.parametrize("name", thin(RIGS, 1, apart=2))
 def test_steady_states_and_batches_agree_with_the_rig_file(name: str) -> None:
     here = rig(name)
     flat = here.flat

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from for_each import one_of_each
+from for_each import one_of_each, thin
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
@@ -165,14 +165,14 @@ def agree(flat: FlatModel, one: np.ndarray, other: np.ndarray) -> bool:
     return bool((np.abs(one - other) <= SAME * (nominal + np.abs(one))).all())
 
 
-@pytest.mark.parametrize(("rig", "drive"), CASES)
+@pytest.mark.parametrize(("rig", "drive"), thin(CASES))
 def test_every_point_converges_alike_or_is_refused_by_name(
     rig: str, drive: str, tmp_path: Path, opened: Callable[..., Any]
 ) -> None:
     alike(model(rig, drive), *points(rig, drive), tmp_path, opened)
 
 
-@pytest.mark.parametrize("kind", ALONE)
+@pytest.mark.parametrize("kind", thin(ALONE))
 def test_every_point_of_a_part_that_no_rig_has(kind: str, tmp_path: Path, opened: Callable[..., Any]) -> None:
     flat = between_sources(kind)
     alike(flat, *points_of_a_part(flat), tmp_path, opened)
@@ -210,7 +210,7 @@ def test_the_table_is_large_enough(rig: str) -> None:
     assert sum(points(rig, drive)[0].shape[1] for name, drive in CASES if name == rig) >= 60
 
 
-@pytest.mark.parametrize(("rig", "drive"), chosen(without=("torque", "torques")))
+@pytest.mark.parametrize(("rig", "drive"), thin(chosen(without=("torque", "torques")), 1))
 def test_steady_states_of_python_and_batch_are_the_same(rig: str, drive: str) -> None:
     """Where the machine settles in a cold and in a hot room; what one refuses the other refuses, and says where."""
     flat = model(rig, drive)

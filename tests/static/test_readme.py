@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import typer
 from broken_assemblies import BROKEN
+from for_each import thin
 from gearheat.fmu.description import description
 from gearheat.fmu.equations import equations
 from gearheat.fmu.variables import table
@@ -23,13 +24,15 @@ ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 EVERY = [README, ROOT / "CONTRIBUTING.md", *pages()]
 PROGRAM = typer.main.get_command(app)
+#: Pages that a newcomer begins with: always run. Of the others some are, unless all tests are.
+FIRST = [README, *(PAGES / "tutorials" / f"own_gearbox{of}.md" for of in ("", "_python"))]
 
 
 def name(page: Path) -> str:
     return page.relative_to(ROOT).as_posix()
 
 
-@pytest.mark.parametrize("page", EVERY, ids=name)
+@pytest.mark.parametrize("page", [*FIRST, *thin(page for page in EVERY if page not in FIRST)], ids=name)
 def test_the_blocks_run_in_their_order(page: Path, tmp_path: Path) -> None:
     assert not Reader(PROGRAM, tmp_path).problems(page)
 

@@ -1,4 +1,4 @@
-"""Every shipped rig through every command, at its own operating point."""
+"""Every shipped rig through commands, at its own operating point: those that take long share the rigs."""
 
 import csv
 from collections.abc import Callable
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from for_each import one_of_each
+from for_each import one_of_each, thin
 from gearheat.scenarios.load import list_rigs, load
 
 RIGS = tuple(one_of_each(list_rigs(), lambda rig: tuple(part.type for part in load(rig).spec.parts)))
@@ -20,11 +20,6 @@ def columns(path: Path) -> dict[str, np.ndarray]:
     with path.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0] if name != "status"}
-
-
-@pytest.fixture(params=RIGS, scope="module")
-def rig(request: pytest.FixtureRequest) -> str:
-    return str(request.param)
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +40,7 @@ def json_of(gearheat, rig: str, told) -> Callable[[str], dict[str, Any]]:
     return answer
 
 
+@pytest.mark.parametrize("rig", RIGS)
 def test_steady_losses_and_show(gearheat, rig: str, json_of) -> None:
     found = json_of("steady")
     assert found["energy_residual"] < 1e-6
@@ -55,6 +51,7 @@ def test_steady_losses_and_show(gearheat, rig: str, json_of) -> None:
     assert gearheat("show", rig, "--errata").code == 0
 
 
+@pytest.mark.parametrize("rig", thin(RIGS, 0))
 def test_design_gives_the_target_back(gearheat, rig: str, json_of) -> None:
     """The room that makes the warmest body 2 K warmer than it is, or without bodies the speed that gives an output."""
     before = json_of("steady")
@@ -76,6 +73,7 @@ def test_design_gives_the_target_back(gearheat, rig: str, json_of) -> None:
     assert after["values"][name] == pytest.approx(target, rel=1e-5)
 
 
+@pytest.mark.parametrize("rig", thin(RIGS, 1))
 def test_sweep_agrees_with_steady(gearheat, rig: str, json_of, tmp_path: Path) -> None:
     inputs = json_of("show")["inputs"]
     speed = next(q for q in inputs if q["name"].endswith(".w"))
@@ -93,6 +91,7 @@ def test_sweep_agrees_with_steady(gearheat, rig: str, json_of, tmp_path: Path) -
             assert column[row] == pytest.approx(value, rel=1e-5, abs=1e-6), name
 
 
+@pytest.mark.parametrize("rig", thin(RIGS, 2))
 def test_a_warm_up_in_fmpy_is_that_of_simulate(gearheat, rig: str, json_of, tmp_path: Path) -> None:
     fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
     assert gearheat("export", "--platform", "host", rig, "-o", fmu).code == 0

@@ -143,12 +143,12 @@ of = { i = "ratio" }
 path = "i / i"
 
 [[row]]
-name = "area that holds 50 degC, over 0.1 m2"
+name = "area that holds 40 degC, over 0.1 m2"
 where = "by construction"
 published = "more"
 run = "design"
 free = "cooling.A"
-target = "oil.T=50 degC"
+target = "oil.T=40 degC"
 path = "cooling.A > 0.1"
 """
 WRONG = (
@@ -282,8 +282,8 @@ class TestCommand:
 
     def test_what_has_no_solution_is_not_reproduced_nor_what_follows_from_it(self, gearheat, reducer) -> None:
         """No area cools the oil below the room; what is computed from that row has no value either."""
-        rows = GOOD.replace("oil.T=50 degC", "oil.T=5 degC").replace(
-            '{ i = "ratio" }', '{ i = "area that holds 50 degC, over 0.1 m2" }'
+        rows = GOOD.replace("oil.T=40 degC", "oil.T=5 degC").replace(
+            '{ i = "ratio" }', '{ i = "area that holds 40 degC, over 0.1 m2" }'
         )
         answer = gearheat("verify", reducer(rows), "--json", "-")
         assert answer.code == 1

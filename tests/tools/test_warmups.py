@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from for_each import thin
 from gearheat.fmu.batch import Batch, Status
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import list_rigs, load
 
 
-@pytest.mark.parametrize("name", list_rigs())
+@pytest.mark.parametrize("name", thin(list_rigs(), 1))
 def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     """At several loads, through a stop of its shaft and a room that cools down."""
     spec = load(name).spec
