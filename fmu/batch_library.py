@@ -20,7 +20,7 @@ import numpy as np
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import FmuError
 from . import emit, rosenbrock
-from .compiling import binary, host_platform
+from .compiling import binary, host_platform, why_not_loaded
 from .equations import equations, full, hoist
 from .fixed import wrapper
 from .grid import Grid
@@ -122,7 +122,7 @@ def load(source: str) -> ctypes.CDLL:
     try:
         return ctypes.CDLL(name)
     except OSError as error:
-        raise FmuError(f"the compiled code does not load: {error}") from error
+        raise FmuError(f"the compiled code does not load: {why_not_loaded(error, Path(name).parent)}") from error
     finally:
         with contextlib.suppress(OSError):  # Windows keeps a library that is in use
             Path(name).unlink()

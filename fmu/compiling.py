@@ -186,6 +186,18 @@ def store(path: Path, content: bytes) -> None:
         ) from error
 
 
+def why_not_loaded(error: Exception, folder: Path | str) -> str:
+    """Why code in a folder does not load, in words.
+
+    Args:
+        error: what loading it has raised
+        folder: where it lies
+    """
+    banned = hasattr(os, "statvfs") and os.statvfs(folder).f_flag & getattr(os, "ST_NOEXEC", 0)
+    remedy = "no code runs from that file system (noexec). Set TMPDIR to a folder of another one"
+    return f"{tempfile.gettempdir()}: {remedy}." if banned else str(error)
+
+
 def make_private(folder: Path) -> None:
     """Make a folder and those above it that its owner alone may enter."""
     if not folder.is_dir():

@@ -5,7 +5,7 @@ Only parameters that have an effect become parameters of an FMU.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -37,11 +37,38 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         flat: the model
         start: values that replace those of the model; a parameter that goes is replaced by its value
     """
-    parts, column = _parts(flat)
     moving = _moving(flat)
-    kept = [i for i in range(len(flat.parameters)) if i in moving]
+    return _keep(flat, [i for i in range(len(flat.parameters)) if i in moving], start)
+
+
+def fix(flat: FlatModel, constants: Collection[str], start: Mapping[str, float] | None = None) -> FlatModel:
+    """The model with some parameters as constants: without what follows from them, or must hold between them alone.
+
+    Args:
+        flat: the model
+        constants: names of the parameters
+        start: values that replace those of the model
+    """
+    hidden = set(constants)
+    found = _keep(flat, [i for i, q in enumerate(flat.parameters) if q.name not in hidden], start)
+    derived = {name: those for name, those in flat.derived.items() if not hidden & {*those}}
+    shown = [i for i, q in enumerate(flat.outputs) if q.name not in flat.derived or q.name in derived]
+    told = [i for i, relation in enumerate(flat.relations) if not {*relation.parameters} <= hidden]
+    return replace(
+        found,
+        outputs=tuple(flat.outputs[i] for i in shown),
+        y=ca.SX(found.y)[shown],
+        derived=derived,
+        relations=tuple(flat.relations[i] for i in told),
+        related=ca.SX(found.related)[told],
+    )
+
+
+def _keep(flat: FlatModel, kept: Sequence[int], start: Mapping[str, float] | None) -> FlatModel:
+    """The model with some of its parameters, and numbers in place of the others."""
     if len(kept) == len(flat.parameters):
         return flat
+    parts, column = _parts(flat)
     values = {q.name: q.start for q in flat.parameters} | dict(start or {})
     old = ca.vertsplit(flat.p)
     symbols = {i: ca.SX.sym(flat.parameters[i].name) for i in kept}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -15,6 +16,7 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from ..model.errors import FmuError
+from .compiling import why_not_loaded
 
 # Types of the functions' arguments, and those of the ones that set or get values.
 _ADDRESS = ctypes.c_void_p
@@ -57,10 +59,12 @@ class Slave(ABC):
         self._messages: list[str] = []
         identity = {"guid": description.guid, "instanceName": description.modelName}
         place = {"unzipDirectory": folder, "modelIdentifier": description.coSimulation.modelIdentifier}
+        here = Path.cwd()
         try:
             self._fmu = self._open({**identity, **place})
-        except Exception as error:  # FMPy raises bare Exception
-            raise FmuError(f"{self._name} cannot be loaded: {self.said() or error}") from error
+        except Exception as error:  # FMPy raises bare Exception, and stays in the folder of the library
+            os.chdir(here)
+            raise FmuError(f"{self._name} cannot be loaded: {self.said() or why_not_loaded(error, folder)}") from error
         self._bind(description)
 
     @abstractmethod

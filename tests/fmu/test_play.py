@@ -1,5 +1,7 @@
 """Playing: against closed forms and an accurate reference, at jumps, for several communication steps."""
 
+import os
+import zipfile
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -8,6 +10,7 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 import pytest
+from gearheat.fmu import batch_library
 from gearheat.fmu.play import Played, Player, play
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
@@ -181,3 +184,24 @@ def test_files_that_are_refused(rc_fmu: Path, tmp_path: Path) -> None:
     text.write_text("no zip file")
     assert "is no FMU" in refusal(lambda: Player(text))
     assert "no such file" in refusal(lambda: Player(tmp_path / "nothing.fmu"))
+
+
+@pytest.mark.skipif(not hasattr(os, "ST_NOEXEC"), reason="file systems of this machine run all code")
+def test_a_folder_from_which_no_code_runs_is_told(
+    rc_fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And the program stays where it is, as names of files that follow are from there."""
+    broken = tmp_path / "broken.fmu"
+    with zipfile.ZipFile(rc_fmu) as whole, zipfile.ZipFile(broken, "w") as file:
+        for name in whole.namelist():
+            file.writestr(name, b"" if name.startswith("binaries/") else whole.read(name))
+    here = Path.cwd()
+    with pytest.raises(FmuError, match=r"broken.fmu cannot be loaded: (?!.*noexec)"):
+        Player(broken)
+    monkeypatch.setattr(os, "statvfs", lambda _: SimpleNamespace(f_flag=os.ST_NOEXEC))
+    with pytest.raises(FmuError, match=r"no code runs from that file system \(noexec\). Set TMPDIR"):
+        Player(broken)
+    monkeypatch.setattr(batch_library, "binary", lambda *_: b"")
+    with pytest.raises(FmuError, match=r"noexec"):
+        batch_library.load("")
+    assert Path.cwd() == here

@@ -77,6 +77,27 @@ def test_ctrl_c_ends_whatever_runs(started, tmp_path, work):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are interrupted otherwise there")
+@pytest.mark.parametrize("module", ["gearheat.tools.show.ending", "gearheat.tools.cli.app"])
+def test_ctrl_c_while_the_program_loads(started, module):
+    """Also where what imports makes another exception of it, as enumerations and named tuples do."""
+    script = f"""if True:
+        import os, signal, sys
+        class Finder:
+            def find_spec(self, name, *_):
+                try:
+                    if name == {module!r}:
+                        os.kill(os.getpid(), signal.SIGINT)
+                except KeyboardInterrupt:
+                    raise RuntimeError("lost") from None
+        sys.meta_path.insert(0, Finder())
+        from gearheat.tools.cli.__main__ import main
+        main()"""
+    process = started("-c", script, first=False)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (130, "", "interrupted\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are interrupted otherwise there")
 def test_ctrl_c_ends_an_integration(started, tmp_path):
     rows = "".join(f"{k},{100 + 50 * (k % 2)},1500,25\n" for k in range(20_000))
     head = "time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"

@@ -16,6 +16,7 @@ from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 from for_each import thin
 from gearheat.fmu import compiling
+from gearheat.fmu.equations import fix
 from gearheat.fmu.play import Player
 from gearheat.fmu.related import FOLDER, PARAMETERS
 from gearheat.model.errors import FmuError
@@ -412,7 +413,11 @@ def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
     say = ("--author", "A. Maker, Example Ltd", "--model-version", "1.2", "--date", "2026-01-31T12:00:00Z")
-    found = gearheat("export", "helical_two_stage", "-o", path, *keep, *say, "--extras", extras, "--json", "-").json
+    words = ("helical_two_stage", "-o", path, *keep, "--constant", "stage_1", *say, "--extras", extras)
+    found = gearheat("export", *words, "--json", "-").json
+    flat = flat_of(load("helical_two_stage"))
+    follows = {n for n, those in flat.derived.items() if any(t.startswith("stage_1.") for t in those)}
+    assert follows and "stage_1.z_1" in found["constants"] and "stage_2.z_1" in found["parameters"]
     beside = [place.read_text(encoding="utf-8") for place in sorted(extras.rglob("*.ssv"))]
     assert len(beside) > 20 and not any("provenance" in text for text in beside)
     assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
@@ -426,8 +431,18 @@ def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
         assert not [name for name in file.namelist() if name.startswith("sources/")]
         for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
             assert b"assumed: standard module" not in file.read(name), name
+        contents = [file.read(name) for name in file.namelist()] + [text.encode() for text in beside]
+        told = {n for n in (*found["constants"], *follows) if any(n.encode() in content for content in contents)}
+        assert not told and any(b"stage_2.z_1" in content for content in contents)
     with Player(path) as player:
         assert player.run({}, 600, 60.0).time[-1] == 600
+    fixed = fix(flat, found["constants"])
+    x, u = flat.starts("state"), flat.starts("input")
+    whole, same = (evaluate_at(each, x, u, each.starts("parameter")) for each in (flat, fixed))
+    assert same["ode"] == pytest.approx(whole["ode"], rel=1e-12)
+    y = dict(zip((q.name for q in flat.outputs), whole["y"], strict=True))
+    assert same["y"] == pytest.approx([y[q.name] for q in fixed.outputs], rel=1e-9, abs=1e-9)
+    assert gearheat("export", "helical_two_stage", "-o", path, "--constant", "stage_1.z1").code == 2
 
 
 def test_no_licence_is_told_that_was_not_given(gearheat, tmp_path):

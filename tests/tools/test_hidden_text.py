@@ -3,6 +3,7 @@
 import csv
 import shutil
 import zipfile
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -81,7 +82,14 @@ def test_what_an_owner_says_can_be_seen(gearheat, tmp_path, option, text):
 @pytest.mark.parametrize("title", ["=1+1", "+1", "-1", "@x", "=HYPERLINK(1,2)"])
 def test_a_column_is_no_formula(title):
     import numpy as np
-    from gearheat.tools.show.columns import table_text
+    from gearheat.tools.diagnose.report.tables import predictions_text
+    from gearheat.tools.show.columns import rows_text, table_text
 
     (head, *_) = csv.reader(table_text({title: np.zeros(2), "oil.T": np.ones(2)}).splitlines())
     assert head == [f"'{title}", "oil.T"]
+    (head, row) = csv.reader(rows_text([title, "n"], [[title, -1]]).splitlines())
+    assert (head, row) == ([f"'{title}", "n"], [f"'{title}", "-1"])
+    predictions = [SimpleNamespace(point=title, nominal={title: 1.0}, extended={title: -2.0})]
+    found = predictions_text(SimpleNamespace(predictions=predictions, channels=[]))
+    (head, row) = csv.reader(found.splitlines())
+    assert head[1:] == [f"'{title}_nominal", f"'{title}_extended"] and row == [f"'{title}", "1.000", "-2.000"]

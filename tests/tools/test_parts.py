@@ -10,6 +10,7 @@ from gearheat.model.core.declare import Parameter, Port, list_declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.describe import parts
+from gearheat.tools.export.extras import text_of
 
 SCHEMA = parts.schema()
 
@@ -31,6 +32,14 @@ def test_everything_about_a_type(kind):
     example = tomllib.loads(found["example"])
     assert example["part"]["name"]["type"] == kind
     assert set(example["part"]["name"]) <= set(SCHEMA["$defs"][f"part_{kind}"]["properties"])
+
+
+def test_a_type_without_words(monkeypatch):
+    """One of a user's own, or any where Python leaves out all docstrings (-OO)."""
+    for cls in PARTS["HeatCapacity"].__mro__[:-1]:
+        monkeypatch.setattr(cls, "__doc__", None)
+    assert parts.schema()["$defs"]["part_HeatCapacity"]
+    assert text_of(PARTS["HeatCapacity"]("body", C=1.0)).doc == "HeatCapacity: "
 
 
 def test_a_lip_seal_tells_what_other_laws_give(gearheat):

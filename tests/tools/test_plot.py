@@ -47,6 +47,11 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
         assert None in ends or ends[0] > ends[1]
 
 
+def test_a_machine_at_rest_has_a_picture():
+    picture = heat_picture("at rest", [], {})
+    assert "no heat flows" in [text.get_text() for text in picture.figure.axes[0].texts]
+
+
 @pytest.mark.parametrize("kind", [".png", ".html"])
 def test_steady_draws_where_the_heat_goes(gearheat, tmp_path, kind):
     plot = tmp_path / f"heat{kind}"

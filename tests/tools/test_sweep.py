@@ -8,12 +8,13 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, ScenarioError
-from gearheat.tools.solve import sampling, sweep, sweep_plan, sweep_rows
+from gearheat.tools.solve import cluster, sampling, sweep, sweep_plan, sweep_rows
 from gearheat.tools.solve.sampling import Axis
 from gearheat.tools.solve.sweep_rows import Store
 
@@ -322,9 +323,34 @@ def test_a_cluster_gives_the_same_rows(gearheat, tmp_path) -> None:
     assert (tmp_path / "cluster.csv").read_bytes() == (tmp_path / "local.csv").read_bytes()
 
 
+class Slow:
+    """Rows that take some time, in place of a job."""
+
+    def rows(self, values: np.ndarray, threads: int) -> np.ndarray:
+        time.sleep(0.2)
+        return values + os.getpid()
+
+
+def test_a_cluster_goes_on_when_its_worker_dies(capsys, monkeypatch) -> None:
+    """The only worker, in the middle of its rows; the next one has nothing of what that had."""
+    distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install gearheat[dask]")
+    monkeypatch.setattr(cluster, "LOOK", 0.05)
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "worker_dashboard_address": None}
+    with distributed.LocalCluster(**options) as there:
+        blocks = ((k, np.array([float(k)])) for k in range(12))
+        processes = set()
+        for number, values in cluster.run_on_cluster(Slow(), blocks, there.scheduler_address):
+            processes.add(process := int(values[0]) - number)
+            if number == 2:
+                os.kill(process, signal.SIGKILL)
+    assert len(processes) == 2
+    told = capsys.readouterr().err
+    assert "has gone: others solve its rows again" in told and "no worker is left" in told
+
+
 def test_a_cluster_that_is_not_there(gearheat, tmp_path, monkeypatch) -> None:
     pytest.importorskip("distributed", reason="Dask is not installed: pip install gearheat[dask]")
-    monkeypatch.setattr(sweep_rows, "PATIENCE", 0.3)
+    monkeypatch.setattr(cluster, "PATIENCE", 0.3)
     arguments = ("sweep", "planetary", *VARY, *KEPT, "--sample", "10", "-o", tmp_path / "out.csv")
     answer = gearheat(*arguments, "--scheduler", "tcp://127.0.0.1:9")
     assert answer.code == 2

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
+from fmpy import extract
 from scipy.integrate import solve_ivp
 
 from ...fmu.export import export
@@ -29,6 +30,7 @@ from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import flat_of
 from .costs import STAGE, STAGES, from_c, growth, massless
+from .exchange import Exchange, exchanged
 from .harness import TABLES, environment, run, script, timed
 
 #: Thermal nodes of the chains by which growth is measured.
@@ -39,6 +41,9 @@ MASSLESS = (20, 80, 160, 1000)
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 #: Communication step of the peers that have one [s].
 STEP = 60.0
+#: Solvers of SciPy, and the peer that is one on functions of the FMU itself.
+METHODS = ("LSODA", "BDF")
+OF_FMU = "SciPy {}, functions of this FMU"
 PYTHONFMU = "PythonFMU, explicit Euler of 0.5 s, in FMPy"
 
 
@@ -69,13 +74,14 @@ def measure(
         fmu = export(flat, Path(folder) / "rig.fmu")
         found = from_c(fmu, Path(folder), speed, truth, flat)
         found["fmu_kB"] = fmu.stat().st_size / 1000
-        peers = _peers(flat, duty, ends, truth, fmu, speed, found["warmup_60_error_K"])
+        bare = export(flat, Path(folder) / "bare.fmu", audit=False)
+        peers = _peers(flat, duty, ends, truth, (fmu, bare), speed, found["warmup_60_error_K"])
         if pythonfmu:
             peers[PYTHONFMU] = Peer(*_pythonfmu(flat, duty, ends, truth, Path(folder)), None)
     base = found["warmup_60_s"]
     found["peers"] = {name: {**peer._asdict(), "over_fmu_from_c": peer.s / base} for name, peer in peers.items()}
-    found["lsoda_ratio"] = found["peers"]["SciPy LSODA"]["over_fmu_from_c"]
-    found["bdf_ratio"] = found["peers"]["SciPy BDF"]["over_fmu_from_c"]
+    for method in METHODS:
+        found[f"{method.lower()}_ratio"] = found["peers"][OF_FMU.format(method)]["over_fmu_from_c"]
     if pythonfmu:
         found["pythonfmu_ratio"] = found["peers"][PYTHONFMU]["over_fmu_from_c"]
     found["growth"] = [growth(n) for n in chains]
@@ -93,6 +99,7 @@ def _meets(value: float, sign: str, bound: float) -> bool:
 
 
 Run = Callable[[float], np.ndarray]
+Rates = Callable[[float, np.ndarray], np.ndarray]
 
 
 def _clock(work: Callable[[], np.ndarray], truth: np.ndarray) -> tuple[float, float]:
@@ -111,9 +118,21 @@ def _as_accurate(run: Run, truth: np.ndarray, error: float) -> Peer:
 
 
 def _peers(
-    flat: FlatModel, duty: Schedule, ends: list[float], truth: np.ndarray, fmu: Path, speed: str, error: float
+    flat: FlatModel,
+    duty: Schedule,
+    ends: list[float],
+    truth: np.ndarray,
+    fmus: tuple[Path, Path],
+    speed: str,
+    error: float,
 ) -> dict[str, Peer]:
-    """The same warm-up by other means, at tolerances where their error is no larger than that of the FMU."""
+    """The same warm-up by other means, at tolerances where their error is no larger than that of the FMU.
+
+    Of the two FMUs the second one is without states of the audit, for solvers that would have to integrate them.
+    """
+    fmu, bare = fmus
+    place = fmu.with_suffix("")
+    extract(str(fmu), str(place))
     inputs = {name: (duty.time, values) for name, values in duty.values.items()}
     names = [q.name for q in flat.states]
 
@@ -124,17 +143,34 @@ def _peers(
     def played() -> np.ndarray:
         return np.asarray(player.run(inputs, ends[-1], STEP, record=names, output_times=ends).values)
 
-    def fmpy(kind: str) -> Run:
-        return lambda tolerance: _fmpy(fmu, duty, ends, speed, names, kind, tolerance)
+    def fmpy(kind: str, what: Path = place) -> Run:
+        return lambda tolerance: _fmpy(what, duty, ends, speed, names, kind, tolerance)
 
     with Player(fmu) as player:
         peers = {"this project's Player, this FMU, 60 s": Peer(*_clock(played, truth), 1e-5)}
-    peers["FMPy, this FMU, 60 s"] = Peer(*_clock(lambda: fmpy("CoSimulation")(1e-5), truth), 1e-5)
+    for name, what in (("FMPy, this FMU, 60 s", place), ("FMPy, this FMU, 60 s, unpacked at every run", fmu)):
+        peers[name] = Peer(*_clock(lambda what=what: fmpy("CoSimulation", what)(1e-5), truth), 1e-5)  # type: ignore[misc]
     peers["FMPy, model exchange, its CVode"] = _as_accurate(fmpy("ModelExchange"), truth, error)
     peers["CasADi IDAS from Python"] = _as_accurate(idas, truth, error)
-    peers["SciPy LSODA"] = _as_accurate(_scipy(flat, ends, speed, "LSODA"), truth, error)
-    peers["SciPy BDF"] = _as_accurate(_scipy(flat, ends, speed, "BDF"), truth, error)
+    with exchanged(bare, bare.with_suffix("")) as model:
+        for method in METHODS:
+            peers[OF_FMU.format(method)] = _as_accurate(_exchange(flat, model, ends, speed, method), truth, error)
+    for method in METHODS:
+        peers[f"SciPy {method}, expressions from Python"] = _as_accurate(
+            _scipy(flat, ends, speed, method), truth, error
+        )
     return peers
+
+
+def _exchange(flat: FlatModel, model: Exchange, ends: list[float], speed: str, method: str) -> Run:
+    """The warm-up by a solver of SciPy on the functions of an FMU."""
+    whole = flat.quantity(speed).start
+
+    def at(share: float) -> tuple[Rates, Rates]:
+        model.give({speed: share * whole})
+        return model.rates, model.slopes
+
+    return _solved(flat, ends, method, at)
 
 
 def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
@@ -143,22 +179,24 @@ def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
     ode, symbols = _explicit(flat)
     value = ode(*symbols)
     rates, slopes = Fast("rates", symbols, [value]), Fast("slopes", symbols, [ca.jacobian(value, symbols[0])])
+
+    def at(share: float) -> tuple[Rates, Rates]:
+        u = flat.starts("input")
+        u[place] *= share
+        return lambda _, z: rates(z, u, p)[0], lambda _, z: slopes(z, u, p)[0]
+
+    return _solved(flat, ends, method, at)
+
+
+def _solved(flat: FlatModel, ends: list[float], method: str, at: Callable[[float], tuple[Rates, Rates]]) -> Run:
+    """The warm-up by a solver of SciPy, from rates and their Jacobian at a share of the speed."""
     nominal = np.array([q.nominal for q in flat.states])
 
     def run(tolerance: float) -> np.ndarray:
         x, t, rows = flat.starts("state"), 0.0, []
         for end, share in zip(ends, STAGES, strict=True):
-            u = flat.starts("input")
-            u[place] *= share
-            solved = solve_ivp(
-                lambda _, z, u=u: rates(z, u, p)[0],
-                (t, end),
-                x,
-                method=method,
-                jac=lambda _, z, u=u: slopes(z, u, p)[0],
-                rtol=1e-12,
-                atol=tolerance * nominal,
-            )
+            rates, slopes = at(share)
+            solved = solve_ivp(rates, (t, end), x, method=method, jac=slopes, rtol=1e-12, atol=tolerance * nominal)
             x, t = solved.y[:, -1], end
             rows.append(x)
         return np.stack(rows)

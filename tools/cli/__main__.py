@@ -4,12 +4,24 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
 from contextlib import suppress
+
+INTERRUPTED = 130
+
+
+def _leave(*_: object) -> None:
+    """End at once: an exception is lost in the middle of an import, or becomes another one."""
+    with suppress(OSError):
+        os.write(2, b"interrupted\n")
+    os._exit(INTERRUPTED)
 
 
 def main() -> None:
     """Entry point of the program."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _leave)  # while the program loads; there is nothing yet to be tidied up
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by who has started the program
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
@@ -27,7 +39,7 @@ def main() -> None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
-        sys.exit(130)
+        sys.exit(INTERRUPTED)
     except OSError as error:  # what typer itself prints: help, version, completion
         if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EPIPE):
             raise

@@ -31,6 +31,7 @@ def export(
     origins: bool = True,
     extras: Path | None = None,
     uncertainty: bool = False,
+    constant: list[str] | None = None,
     ssp: list[str] | None = None,
     json: str | None = None,
 ) -> None:
@@ -53,6 +54,7 @@ def export(
         parameters_source=origins,
         extras=extras,
         uncertainty=uncertainty,
+        constant=constant or (),
         ssp=ssp or (),
     )
     found = written.as_dict()

@@ -197,7 +197,7 @@ def _format_value(value: Any) -> str:
 
 def first_line(cls: type) -> str:
     """What a class is, in a line."""
-    return inspect.cleandoc(cls.__doc__ or "").splitlines()[0]
+    return inspect.cleandoc(cls.__doc__ or "").partition("\n")[0]
 
 
 def schema() -> dict[str, Any]:

@@ -38,6 +38,7 @@ def export(
     parameters_source: bool = True,
     extras: str | Path | None = None,
     uncertainty: bool = False,
+    constant: Sequence[str] = (),
     ssp: Sequence[str] = (),
 ) -> Exported:
     """Write a rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs.
@@ -59,6 +60,7 @@ def export(
         parameters_source: telling where values are from
         extras: folder for parameter sets and a reference result
         uncertainty: with standard deviations, such as oil.T.sd
+        constant: parameters that become constants of its code, by name, part or pattern, and stand in no file of it
         ssp: parts of each FMU of a system, "NAME=PART,PART"; the rest is one FMU
 
     Raises:
@@ -86,6 +88,7 @@ def export(
         fmi=fmi,
         audit=audit,
         uncertainty=uncertainty,
+        constants=constant,
     )
     return export_system(ssp, asked) if ssp else export_rig(asked)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import tempfile
-from collections.abc import Container, Mapping
+from collections.abc import Collection, Container, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -163,6 +163,7 @@ def write_extras(
     duty: Schedule,
     start: Mapping[str, float],
     sources: Mapping[str, str] | None,
+    hidden: Collection[str] = (),
 ) -> list[Path]:
     """Write what goes beside an FMU.
 
@@ -174,6 +175,7 @@ def write_extras(
         duty: of the reference result
         start: start values of the FMU that are not those of the model
         sources: parameter -> where its value is from; None tells neither that nor how uncertain values are
+        hidden: parameters that are constants of the model
 
     Returns:
         NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
@@ -182,7 +184,7 @@ def write_extras(
     sd = None if sources is None else scenario.standard_uncertainties
     own = parameter_set(scenario.name, chosen, doc=scenario.doc, sources=sources, uncertainties=sd)
     files = {folder / f"{fmu.stem}.ssv": own}
-    for oil, content in sets_of_oils(scenario, flat, told=sources is not None).items():
+    for oil, content in sets_of_oils(scenario, flat, told=sources is not None, hidden=hidden).items():
         files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
     for path, content in files.items():
         store(path, content)
@@ -192,20 +194,21 @@ def write_extras(
     return [*files, *reference]
 
 
-def sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:
+def sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool, hidden: Collection[str] = ()) -> dict[str, bytes]:
     """A set for every oil of the catalogue that gives the oil baths all that oils can give this model.
 
     Args:
         scenario: the rig
         flat: its model
         told: whether the sets say where their values are from
+        hidden: parameters that are constants of the model; there is no set where one is an oil's
     """
     oils = {name: oil_values(name) for name in catalogue("oil")}
     given = {key for values in oils.values() for key in values}
     paths = {f"{bath}.{key}": key for bath in scenario.spec.of_type("OilBath") for key in given}
     filled = [q for q in flat.parameters if q.name in paths]
     sets: dict[str, bytes] = {}
-    for name, values in oils.items() if filled else ():
+    for name, values in oils.items() if filled and not paths.keys() & hidden else ():
         if all(paths[q.name] in values for q in filled):
             entry = catalogue("oil")[name]
             chosen = [replace(q, start=values[paths[q.name]]) for q in filled]
@@ -274,21 +277,27 @@ def _heat(assembly: Assembly, start: Mapping[str, float]) -> Figure | None:
     return sankey(paths, temperatures, title) if paths else None
 
 
-def text_of(part: Component) -> PartText:
-    """Equations and laws of a part."""
+def text_of(part: Component, hidden: Collection[str] = ()) -> PartText:
+    """Equations and laws of a part.
+
+    Args:
+        part: the part
+        hidden: parameters that are not named
+    """
     with recording() as uses:
-        equations = [(e.name, f"{_side(part, e.lhs)} = {_side(part, e.rhs)}") for e in part.equations()]
+        equations = [(e.name, f"{_side(part, e.lhs, hidden)} = {_side(part, e.rhs, hidden)}") for e in part.equations()]
     laws = dict.fromkeys(use.law.name for use in (*part.uses, *uses))
-    doc = (inspect.getdoc(type(part)) or "").splitlines()[0]
+    doc = (inspect.getdoc(type(part)) or "").partition("\n")[0]
     return PartText(part.name, f"{type(part).__name__}: {doc}", equations, tuple(laws))
 
 
-def _side(part: Component, side: Any) -> str:
-    """One side of an equation, or what it is a function of where it is long."""
+def _side(part: Component, side: Any, hidden: Collection[str]) -> str:
+    """One side of an equation, or what it is a function of where it is long or names what is hidden."""
+    names = [s.name() for s in ca.symvar(side)] if isinstance(side, ca.SX) else []
     written = str(side).replace(f"{part.name}.", "")
-    if len(written) <= LONG and "@" not in written:
+    if len(written) <= LONG and "@" not in written and not {*names} & {*hidden}:
         return _without_outer_brackets(written)
-    return f"f({', '.join(s.name().removeprefix(f'{part.name}.') for s in ca.symvar(side))})"
+    return f"f({', '.join(n.removeprefix(f'{part.name}.') for n in names if n not in hidden)})"
 
 
 def _without_outer_brackets(written: str) -> str:

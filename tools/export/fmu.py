@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +13,12 @@ import numpy as np
 
 from ...fmu.compiling import platforms
 from ...fmu.description import Owner
-from ...fmu.equations import effective
+from ...fmu.equations import effective, fix
 from ...fmu.export import export
 from ...fmu.related import Related
 from ...fmu.variables import Choice, Item, drop_idle, start_choice
 from ...model.core.flat import FlatModel
-from ...model.errors import ScenarioError, SolveError
+from ...model.errors import ScenarioError, SolveError, suggestion
 from ...model.machines.spec import assemble
 from ...model.run.point import point
 from ...model.run.rows import evaluate_at
@@ -67,6 +68,7 @@ class Asked:
     fmi: int
     audit: bool
     uncertainty: bool
+    constants: Sequence[str]
 
     def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
@@ -110,20 +112,25 @@ def export_rig(asked: Asked) -> Exported:
     writable(asked.out)
     lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)
-    scenario, setting, flat, start = asked.prepared()
+    scenario, setting, whole, start = asked.prepared()
+    hidden = constants_of(whole, asked.constants)
+    flat = fix(whole, hidden, start)
     beside = folder(asked.extras) if asked.extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     options = asked.options | {"start": start, "fmi": asked.fmi}
     options["uncertain"] = collect_uncertain(setting, flat) if asked.uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
-    options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
+    sets = sets_of_oils(setting, kept, told=asked.with_origins, hidden=hidden)
+    options["others"] = Related(sets, experiment(flat, duty, run))
     options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
     with progress_bar() as options["progress"]:
-        write_fmu(setting, flat, asked.out, verify=lambda fmu: check_fmu(fmu, flat, duty, run), **options)
+        write_fmu(
+            setting, flat, asked.out, hidden=hidden, verify=lambda fmu: check_fmu(fmu, flat, duty, run), **options
+        )
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if asked.with_origins else None
-    written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins)
-    choices = drop_idle(choices_of(setting), kept)
+    written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins, hidden)
+    choices = drop_idle(choices_of(setting, hidden), kept)
     found: dict[str, Any] = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -137,6 +144,7 @@ def export_rig(asked: Asked) -> Exported:
         "parameters": [q.name for q in kept.parameters],
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
+        "constants": [q.name for q in whole.parameters if q.name in hidden],
         "extras": [str(path) for path in written],
         "unchecked": find_unchecked(setting, flat),
     }
@@ -145,7 +153,12 @@ def export_rig(asked: Asked) -> Exported:
 
 
 def write_fmu(
-    scenario: Scenario, flat: FlatModel, out: Path, drawn: Mapping[str, str] | None = None, **options: Any
+    scenario: Scenario,
+    flat: FlatModel,
+    out: Path,
+    drawn: Mapping[str, str] | None = None,
+    hidden: Collection[str] = (),
+    **options: Any,
 ) -> Path:
     """Write the FMU of a rig with all that is known of it: sources, uncertainties, its network, its equations.
 
@@ -154,19 +167,43 @@ def write_fmu(
         flat: its model
         out: file to write
         drawn: figures beside that of the network, title -> SVG
+        hidden: parameters that are constants of the model
         options: of `gearheat.fmu.export.export`
     """
     assembly = assemble(scenario.spec)
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
-    known |= {"choices": choices_of(scenario), "parts": tuple(map(text_of, assembly.parts))}
+    known["choices"] = choices_of(scenario, hidden)
+    known["parts"] = tuple(text_of(part, hidden) for part in assembly.parts)
     figures = {"Network": network_svg(assembly), **(drawn or {})}
     return export(flat, out, figures=figures, **{**known, **options})
 
 
-def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
-    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does."""
+def constants_of(flat: FlatModel, patterns: Sequence[str]) -> set[str]:
+    """Names of the parameters that are to be constants: by name, by part, or by a pattern such as "*.z_1".
+
+    Raises:
+        ScenarioError: one fits no parameter
+    """
+    names = [q.name for q in flat.parameters]
+    fits = {text: [n for n in names if fnmatchcase(n, text) or n.startswith(f"{text}.")] for text in patterns}
+    if wrong := [text for text, found in fits.items() if not found]:
+        problem = "--constant {}: there is no such parameter.{} Name a parameter, a part, or a pattern such as *.z_1."
+        raise ScenarioError([problem.format(text, suggestion(text, names)) for text in wrong])
+    return {name for found in fits.values() for name in found}
+
+
+def choices_of(scenario: Scenario, hidden: Collection[str] = ()) -> tuple[Choice, ...]:
+    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does.
+
+    Args:
+        scenario: the rig
+        hidden: parameters that are constants of the model; an oil's cannot be chosen
+    """
     room = scenario.room if scenario.room in scenario.driven_paths() else None
-    return (start_choice(room), *(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds))
+    filled = [part for part, kinds in scenario.entries.items() if _OIL in kinds]
+    oils = [_oil(scenario, part) for part in filled]
+    free = [oil for oil in oils if not any(item.values.keys() & hidden for item in oil.items)]
+    return (start_choice(room), *free)
 
 
 def _oil(scenario: Scenario, part: str) -> Choice:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,8 +14,10 @@ import numpy as np
 
 from ...fmu.compiling import platforms, store
 from ...fmu.description import EXPERIMENT
+from ...fmu.equations import effective
+from ...fmu.related import PARAMETERS
 from ...fmu.ssp import Element, End, System, ssp
-from ...model.core.flat import FlatModel
+from ...model.core.flat import FlatModel, Quantity
 from ...model.core.flatten import flatten
 from ...model.errors import ScenarioError
 from ...model.machines.apart import Pieces, cut_machine
@@ -23,6 +26,7 @@ from ...model.run.rows import evaluate_at
 from ...scenarios.scenario import Scenario
 from ..show.console import lasting, progress_bar, writable
 from ..solve.settings import flat_of
+from ..solve.steady import first_of
 from .fmu import Asked, Exported, write_fmu
 
 
@@ -38,6 +42,7 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
     if asked.out.suffix.lower() == ".fmu":
         raise ScenarioError(f"-o {asked.out}: --ssp writes a system of FMUs. Its name must end in .ssp.")
     given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
+    given_up["--constant"] = bool(asked.constants)
     if refused := [option for option, is_asked in given_up.items() if is_asked]:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(asked.platform)
@@ -143,7 +148,7 @@ def write_system(setting: Scenario, taken: Taken, out: Path, **options: Any) -> 
             entries = {part: kinds for part, kinds in setting.entries.items() if part in own}
             piece = replace(setting, name=name, spec=spec, entries=entries)
             fmu = write_fmu(piece, flat, Path(folder) / f"{name}.fmu", start=taken.starts[name], **options)
-            elements.append(_element(name, flat, taken.pieces, fmu.read_bytes()))
+            elements.append(_element(piece, effective(flat, taken.starts[name]), taken.pieces, fmu))
     system = _system(setting, taken, elements)
     store(out, ssp(system))
     return {
@@ -159,24 +164,27 @@ def write_system(setting: Scenario, taken: Taken, out: Path, **options: Any) -> 
     }
 
 
-def _element(name: str, flat: FlatModel, pieces: Pieces, fmu: bytes) -> Element:
-    """An FMU with its connectors: what it passes, what it is given by others, its temperatures and speeds.
-
-    An input that nobody gives is none of them, so that it keeps its start value: some simulators set what is a
-    connector to zero.
-    """
-    joined = {j.input for j in pieces.joints if j.taker == name} | {p for p, at in pieces.shared.items() if name in at}
-    passed = {j.output for j in pieces.joints if j.giver == name}
-    inputs = tuple(q for q in flat.inputs if q.name in joined)
+def _element(piece: Scenario, flat: FlatModel, pieces: Pieces, fmu: Path) -> Element:
+    """An FMU with its connectors: its inputs and parameters, what it passes, and what a first answer holds."""
+    passed = {j.output for j in pieces.joints if j.giver == piece.name}
+    passed |= {*first_of(piece, flat, [q.name for q in flat.outputs])}
     outputs = (*flat.states, *(q for q in flat.outputs if q.name in passed))
-    return Element(name, fmu, inputs, outputs, flat.doc)
+    with zipfile.ZipFile(fmu) as held:
+        values = held.read(PARAMETERS)
+    return Element(piece.name, fmu.read_bytes(), flat.inputs, outputs, flat.parameters, values, flat.doc)
 
 
 def _system(setting: Scenario, taken: Taken, elements: Sequence[Element]) -> System:
-    """The system: inputs that several FMUs are given alike are its own."""
+    """The system: its inputs are those that no FMU gives to another."""
     pieces = taken.pieces
     connections: list[tuple[End, End]] = [((j.giver, j.output), (j.taker, j.input)) for j in pieces.joints]
-    connections += [((None, path), (name, path)) for path, names in pieces.shared.items() for name in names]
-    inputs = tuple(taken.flats[names[0]].quantity(path) for path, names in pieces.shared.items())
-    stop = float(EXPERIMENT["stopTime"])
-    return System(setting.name, setting.doc, tuple(elements), tuple(connections), inputs, stop)
+    joined = {end for _, end in connections}
+    inputs: dict[str, Quantity] = {}
+    for element in elements:
+        for q in element.inputs:
+            if (element.name, q.name) not in joined:
+                inputs[q.name] = q
+                connections.append(((None, q.name), (element.name, q.name)))
+    stop, step = (float(EXPERIMENT[key]) for key in ("stopTime", "stepSize"))
+    given = tuple(inputs.values())
+    return System(setting.name, setting.doc, tuple(elements), tuple(connections), given, stop, step)

@@ -19,6 +19,16 @@ def titled(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> dict[
     return {f"{name} [{show_unit(units[name])}]": from_si(column, units[name]) for name, column in columns.items()}
 
 
+#: What a spreadsheet takes a cell for that begins so: a formula.
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def cell_text(text: str) -> str:
+    """A word as a cell of CSV: no formula to a spreadsheet, in quotes where it holds a comma, a quote or a line end."""
+    safe = f"'{text}" if text.startswith(FORMULA) else text
+    return '"' + safe.replace('"', '""') + '"' if any(c in safe for c in ',"\r\n') else safe
+
+
 def rows_text(head: Iterable[str], rows: Iterable[Iterable[float | str | None]]) -> str:
     """CSV text of numbers with nine digits and of words; nothing where a value is missing.
 
@@ -28,19 +38,15 @@ def rows_text(head: Iterable[str], rows: Iterable[Iterable[float | str | None]])
     """
 
     def cell(value: float | str | None) -> str:
+        if isinstance(value, str):
+            return cell_text(value)
         return "" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
 
-    return "\n".join([",".join(head), *(",".join(map(cell, row)) for row in rows)]) + "\n"
-
-
-#: What a spreadsheet takes a cell for that begins so: a formula.
-FORMULA = ("=", "+", "-", "@")
+    return "\n".join([",".join(map(cell_text, head)), *(",".join(map(cell, row)) for row in rows)]) + "\n"
 
 
 def table_text(columns: Mapping[str, np.ndarray]) -> str:
     """CSV text of columns of numbers, by their titles."""
     line = ",".join(["%.9g"] * len(columns))
     rows = np.column_stack(list(columns.values())).tolist()
-    safe = (f"'{title}" if title.startswith(FORMULA) else title for title in columns)
-    titles = (f'"{title}"' if "," in title else title for title in safe)  # an element of an array: x[1,2]
-    return "\n".join([",".join(titles), *(line % tuple(row) for row in rows)]) + "\n"
+    return "\n".join([",".join(map(cell_text, columns)), *(line % tuple(row) for row in rows)]) + "\n"

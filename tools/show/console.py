@@ -23,7 +23,7 @@ from typing import Any, ParamSpec
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
-from .ending import INTERRUPTED
+from .ending import INTERRUPTED, SAID
 
 P = ParamSpec("P")
 
@@ -58,6 +58,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
             sys.exit(BAD_INPUT)
         except KeyboardInterrupt:
             note("interrupted")
+            SAID.set()
             sys.exit(INTERRUPTED)
         except MemoryError:
             note("error: there is not enough memory. Ask for less at once, or give more.")

@@ -22,6 +22,8 @@ INTERRUPTED = 130
 PATIENCE = 1.4
 #: Set by Ctrl-C.
 _HEARD = threading.Event()
+#: Set where that has been said.
+SAID = threading.Event()
 #: Name of the temporary folder of a process.
 _FOLDER = re.compile(r"gearheat-(\d+)-\w+")
 
@@ -40,15 +42,12 @@ def ending_well() -> Iterator[None]:
     try:
         with listening:
             yield
-    except KeyboardInterrupt:
-        if _HEARD.is_set():
-            os.write(2, b"interrupted\n")
-        raise
     finally:
         tempfile.tempdir = usual
         if own is not None:
             shutil.rmtree(own, ignore_errors=True)
-        if _HEARD.is_set():  # without a wait for threads
+        if _HEARD.is_set():  # without a wait for threads, whatever the exception has become on its way
+            _say()
             with suppress(OSError, ValueError):
                 sys.stdout.flush()
             _exit()
@@ -93,9 +92,14 @@ def _leave() -> None:
     remove_unfinished()
     if _FOLDER.fullmatch(Path(tempfile.gettempdir()).name):
         shutil.rmtree(tempfile.gettempdir(), ignore_errors=True)
-    with suppress(OSError):
-        os.write(2, b"interrupted\n")
+    _say()
     _exit()
+
+
+def _say() -> None:
+    if not SAID.is_set():
+        with suppress(OSError):
+            os.write(2, b"interrupted\n")
 
 
 def _exit() -> None:

@@ -66,7 +66,7 @@ def sankey(paths: Sequence[Path], temperatures: Mapping[str, str], title: str) -
     places = place_columns(paths)
     scale = TALL / max((place.Q_flow for place in places.values()), default=1.0)
     height = _arrange(list(places.values()), paths, scale)
-    last = max(place.column for place in places.values())
+    last = max((place.column for place in places.values()), default=1)
     width = COLUMN * (last + 1)
     figure, (panel,) = empty(width, height + 0.5, 1, 1)
     panel.set(xlim=(0, width), ylim=(height, -0.1), title=title)
@@ -75,6 +75,8 @@ def sankey(paths: Sequence[Path], temperatures: Mapping[str, str], title: str) -
     _draw_paths(panel, places, paths, scale, bands)
     for place in places.values():
         _draw_place(panel, place, scale, temperatures.get(place.name))
+    if not places:
+        panel.text(width / 2, height / 2, "no heat flows", ha="center", va="center", fontsize=9)
     return figure
 
 
@@ -110,7 +112,7 @@ def _arrange(places: Sequence[Place], paths: Sequence[Path], scale: float) -> fl
         columns.setdefault(place.column, []).append(place)
     known = {place.name: place for place in places}
     tall = {k: sum(_room(place, scale) for place in column) for k, column in columns.items()}
-    whole = max(tall.values())
+    whole = max(tall.values(), default=GAP + 2 * LINE)
     for k in sorted(columns):
 
         def level(place: Place) -> float:

@@ -22,9 +22,10 @@ from ..show.console import counting, note
 from ..show.display import Display, optional
 from ..show.picture import Picture
 from . import sampling
+from .cluster import run_on_cluster
 from .simulate import Duty, duty_file
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, Column, Store, local, run_on_cluster, words, work_file, write_table
+from .sweep_rows import TELLING, Block, Column, Store, local, words, work_file, write_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,4 +1,4 @@
-"""The rows of a sweep: what a worker does with a block of them, on this machine or in a Dask cluster.
+"""The rows of a sweep: what a worker does with a block of them.
 
 A work file keeps finished blocks beyond an interruption; what is left in the end is a table.
 
@@ -24,6 +24,7 @@ from ...model.errors import DataError
 from ...model.files import replacing
 from ...model.run.schedule import Schedule
 from ...model.units import from_si, show_unit
+from ..show.columns import cell_text
 from ..show.console import note
 
 #: First bytes of a work file.
@@ -38,9 +39,6 @@ SCHEMA = "gearheat.sweep.rows/1"
 
 #: What stands behind the outputs of a row.
 TELLING = ("status", "iterations", "energy_residual", "outside")
-
-#: How long a cluster may take to answer, and to get its first worker [s].
-PATIENCE = 20.0
 
 Block = tuple[int, np.ndarray]
 
@@ -187,7 +185,7 @@ def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[
 def _write_csv(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
     formats = ["%s" if c.name == "status" else "%d" if c.unit is None else "%.9g" for c in columns]
     with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.write(",".join(c.title for c in columns) + "\n")
+        file.write(",".join(cell_text(c.title) for c in columns) + "\n")
         line = ",".join(formats) + "\n"
         for block in blocks:
             cells = [_cells(c, numbers) for c, numbers in zip(columns, block, strict=True)]
@@ -267,68 +265,7 @@ class Job:
         return np.column_stack([*(rows[name].ravel() for name in self.outputs), telling])
 
 
-def _rows(job: Job, values: np.ndarray) -> np.ndarray:
-    return job.rows(values, threads=1)
-
-
 def local(job: Job, blocks: Iterable[Block], threads: int) -> Iterator[Block]:
     """The finished blocks, solved on this machine."""
     for number, values in blocks:
         yield number, job.rows(values, threads)
-
-
-def run_on_cluster(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
-    """The finished blocks in the order in which the workers of a Dask cluster finish them.
-
-    Raises:
-        DataError: the scheduler does not answer, has no workers, or a worker cannot do the work
-    """
-    from distributed import as_completed
-
-    client = _client(address)
-    try:
-        (shared,) = client.scatter([job], broadcast=True, hash=False)
-        limit = 2 * sum(client.nthreads().values())
-        numbers: dict[Any, int] = {}
-        ready = as_completed(loop=client.loop)
-
-        def finished() -> Block:
-            future = next(ready)
-            return numbers.pop(future.key), future.result()
-
-        for number, values in blocks:
-            if len(numbers) >= limit:
-                yield finished()
-            future = client.submit(_rows, shared, values, pure=False)
-            numbers[future.key] = number
-            ready.add(future)
-        while numbers:
-            yield finished()
-    except (GeneratorExit, KeyboardInterrupt):
-        raise
-    except Exception as error:  # whatever a worker or the network raises
-        raise DataError(
-            f"--scheduler {address}: a worker cannot do its rows: {type(error).__name__}: {str(error)[:300]}\n"
-            "Workers need this version of gearheat in their environment."
-        ) from error
-    finally:
-        client.close()
-
-
-def _client(address: str) -> Any:
-    """A connection to a scheduler that has workers."""
-    from distributed import Client
-
-    try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise DataError(
-            f"--scheduler {address}: no answer ({str(error)[:200] or type(error).__name__}).\n"
-            'Start one with "dask scheduler" and give the address it prints, like tcp://host:8786.'
-        ) from None
-    try:
-        client.wait_for_workers(1, timeout=PATIENCE)
-    except TimeoutError:
-        client.close()
-        raise DataError(f'--scheduler {address}: no workers came. Start some with "dask worker {address}".') from None
-    return client

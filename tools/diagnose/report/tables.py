@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from ...show.columns import cell_text
 from ..answer.channels import ENDINGS
 from ..answer.design import APART
 from ..answer.evidence import ResidualMean
@@ -233,10 +232,8 @@ def predictions_text(findings: Findings) -> str:
     names = dict.fromkeys(name for p in findings.predictions for name in p.nominal)
     ends = {c.name: ENDINGS[c.unit][0] for c in findings.channels if c.unit in ENDINGS}
     columns = [f"{name}_{model}{ends.get(name, '')}" for name in names for model in ("nominal", "extended")]
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["point", *columns])
+    lines = [",".join(map(cell_text, ["point", *columns]))]
     for p in findings.predictions:
         pairs = [values.get(name) for name in names for values in (p.nominal, p.extended)]
-        writer.writerow([p.point, *("" if v is None else f"{v:.3f}" for v in pairs)])
-    return out.getvalue()
+        lines.append(",".join([cell_text(str(p.point)), *("" if v is None else f"{v:.3f}" for v in pairs)]))
+    return "\n".join(lines) + "\n"
