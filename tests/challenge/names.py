@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -20,6 +21,7 @@ from typing import Annotated, Any
 import jinja2
 import numpy as np
 import typer
+from gearheat.model.errors import GearheatError
 from gearheat.scenarios.measured.adapter import Columns, adapter, write_csv
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.diagnose.api import diagnose
@@ -33,6 +35,8 @@ HERE = Path(__file__).parent
 STORED, PAGE = HERE / "names.json", HERE.parents[1] / "tools" / "docs" / "pages" / "trust" / "names.md"
 #: Probability that the answers of a set have together.
 LEVEL = 0.9
+#: Columns of the page.
+WIDTH = 120
 #: Readings of a tenth of the healthy stage: every tenth reading, or a stretch of them, in which pump and valve differ.
 CHUNKS = 12
 #: Conductance of the cooler at 3 % over the healthy one by the makers' cooling power, TS3 and the room.
@@ -167,11 +171,15 @@ def judge(c: Campaign, seed: int = 0) -> dict[str, Any]:
         asked, reference, *siblings = paths
         more: dict[str, Any] = {"card": card, "quick": c.options["quick"], "seed": seed}
         if "point" in c.asked:
-            found = diagnose(asked, c.rig, reference=reference, **more)
+            given: dict[str, Any] = {"data": asked, "reference": reference}
         else:
-            found = diagnose(None, c.rig, logs=asked, reference_logs=reference, sibling_logs=siblings, **more)
+            given = {"data": None, "logs": asked, "reference_logs": reference, "sibling_logs": siblings}
+        try:
+            found = diagnose(rig=c.rig, **given, **more).as_dict()
+        except GearheatError:  # a year in which the machine stands
+            found = {"verdict": "refused", "answers": [], "causes": [], "hypotheses": []}
     seconds = time.process_time() - began
-    return score(c, found.as_dict()) | {"seconds": seconds, "rivals": rivals(c.asked, c.reference, c.channel, c.given)}
+    return score(c, found) | {"seconds": seconds, "rivals": rivals(c.asked, c.reference, c.channel, c.given)}
 
 
 def score(c: Campaign, found: Mapping[str, Any]) -> dict[str, Any]:
@@ -188,7 +196,7 @@ def score(c: Campaign, found: Mapping[str, Any]) -> dict[str, Any]:
         total += probability
         if total >= LEVEL:
             break
-    leading = answers[0][1] if found["verdict"] != "consistent" else []
+    leading = answers[0][1] if found["verdict"] not in ("consistent", "refused") else []
     causes = {cause["id"]: cause for cause in found["causes"]}
     size = next(iter(causes[leading[0]]["parameters"]), None) if leading and leading[0] in causes else None
     gain = found.get("gain") or {}
@@ -224,7 +232,36 @@ def render(stored: Mapping[str, Any]) -> str:
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = environment.from_string((HERE / "names.md.jinja").read_text(encoding="utf-8"))
     by = {result["name"]: result for result in stored["results"]}
-    return template.render(results=stored["results"], by=by, exp=np.exp) + "\n"
+    tenths, stretches = ([f"healthy {words} {k}" for k in range(1, 11)] for words in ("tenth", "stretch"))
+    case = adapter("hydraulic").cases(RIGS / "hydraulic", "cooler at 3 %")[0]
+    rise = {name: float(np.mean(case.asked[name]) - np.mean(case.reference[name])) for name in ("TS1_C", "T_room_C")}
+    rise["healthy"] = float(np.ptp(case.reference["TS1_C"]))
+    known = {"tenths": tenths, "stretches": stretches, "rise": rise, "exp": np.exp}
+    page = template.render(results=stored["results"], by=by, **known)
+    return "\n\n".join(map(_wrapped, page.split("\n\n"))).strip() + "\n"
+
+
+def _wrapped(text: str) -> str:
+    """A paragraph of a page; tables stay as they are."""
+    return text if "|" in text else textwrap.fill(" ".join(text.split()), WIDTH, break_long_words=False)
+
+
+def draw(path: Path) -> None:
+    """The readings of the hydraulic rig: both stages of the cooler in the order of time.
+
+    Args:
+        path: picture to write
+    """
+    from matplotlib.figure import Figure
+
+    case = adapter("hydraulic").cases(RIGS / "hydraulic", "cooler at 3 %")[0]
+    figure = Figure(figsize=(7, 3), layout="constrained")
+    axes = figure.subplots()
+    for name in ("TS1_C", "TS2_C", "TS3_C", "TS4_C", "T_room_C"):
+        axes.plot(np.r_[case.asked[name], np.nan, case.reference[name]], "o-", ms=3, label=name.removesuffix("_C"))
+    axes.set(xlabel="reading: cooler at 3 %, then at 100 %", ylabel="degC")
+    axes.legend(loc="upper right", ncols=5, fontsize=8)
+    figure.savefig(path, metadata={"Date": None})
 
 
 def names(
@@ -242,9 +279,11 @@ def names(
     with ProcessPoolExecutor(jobs) as pool:
         for result in pool.map(run, todo):
             results.append(result)
+            if not only:
+                out.write_text(json.dumps({"seed": seed, "results": results}, indent=1, default=float) + "\n")
             shown = [f"{' + '.join(a['causes']) or 'nothing'} {a['probability']:.2f}" for a in result["answers"]]
             console.note(f"{len(results)}/{len(todo)} {result['name']}: {result['verdict']}: {', '.join(shown)}")
     stored = json.loads(json.dumps({"seed": seed, "results": results}, default=float))
     if not only:
-        out.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
         page.write_text(render(stored), encoding="utf-8")
+        draw(page.with_suffix(".svg"))

@@ -33,6 +33,8 @@ Progress = Callable[[str, float], None]
 
 #: Probability from which a cause that only logs can show is told.
 ALONE = 0.1
+#: Standard deviations at the usual size below which no reading moves with a cause.
+BLIND = 0.01
 
 
 def diagnose(inputs: Inputs, progress: Progress) -> Findings:
@@ -103,7 +105,9 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
     reference, wrong = inputs.reference, decision.verdict != "consistent"
-    rows = pictures.rows(found, leader)
+    rows, isolability = pictures.rows(found, leader), judge_design(Effects(found.first.candidates, found.first.white))
+    seen = "thermometers" if all(s.kind.endswith("_temp") for s in data.read) else "readings"
+    blind = {one.cause: f"not visible in these {seen}" for one in isolability if one.visible < BLIND}
     return Findings(
         **compose.common(made, found, decision),
         about=About(
@@ -129,7 +133,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         channels=tuple(channel(s) for s in data.sensors),
         played=replay(found.problem, found.null, leader) if wrong else {},
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
-        isolability=judge_design(Effects(found.first.candidates, found.first.white)),
+        isolability=isolability,
         residuals=average_residuals(found),
         rows=rows,
         views=pictures.views(found),
@@ -137,7 +141,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         calibrated=calibrated(made, found, leader),
         extended_rig=rig_file(made, found, leader),
         predictions=predict(made, found, inputs.points) if inputs.points else (),
-        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
+        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in {**blind, **inputs.invisible}.items()),
         warnings=inputs.warnings,
     )
 
