@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..model.core.flat import Quantity
 from .description import tool
@@ -12,6 +12,9 @@ from .parameter_set import SSC
 from .units import fmi_unit, unit, units_of
 
 SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
+
+#: Description of the elements and what they pass to each other, without connectors of the system.
+ELEMENTS = "Elements.ssd"
 
 #: The annotation without which OMSimulator takes no system, and its master.
 OMS = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
@@ -72,10 +75,15 @@ class System:
 
 
 def ssp(system: System) -> bytes:
-    """The .ssp file of FMUs and their connections. The same system gives the same bytes."""
+    """The .ssp file of FMUs and their connections. The same system gives the same bytes.
+
+    Beside its description stands one without connectors of the system, for masters that know elements alone.
+    """
     held = {_source(element): element.fmu for element in system.elements}
     held |= {_source(element, ".ssv"): element.values for element in system.elements}
-    return archive({"SystemStructure.ssd": structure(system), **held})
+    inside = tuple((start, end) for start, end in system.connections if start[0] is not None)
+    alone = structure(replace(system, inputs=(), connections=inside))
+    return archive({"SystemStructure.ssd": structure(system), ELEMENTS: alone, **held})
 
 
 def structure(system: System) -> bytes:

@@ -26,6 +26,7 @@ import fmpy
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.util import read_csv
 from gearheat.fmu.export import export
+from gearheat.fmu.ssp import ELEMENTS
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.machines.spec import PartSpec, Spec
 from gearheat.model.run.schedule import join_phases
@@ -207,7 +208,7 @@ def _by_libcosim(fmu: Path) -> dict[str, float]:
 def _ssp_by_libcosim(system: Path) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(system) as file:
         file.extractall(folder)
-        run = _libcosim().from_ssp_file(folder, COUPLED * 1e9)
+        run = _libcosim().from_ssp_file(str(Path(folder) / ELEMENTS), int(COUPLED * 1e9))
         names = {info.name.decode(): info.index for info in run.slave_infos()}
         oil, room = _last(run, HOUR, {names["gearbox"]: 0, names["room"]: 0})
     return {"oil.T": oil, "room.T": room}
@@ -245,7 +246,11 @@ def _by_ecos(fmu: Path) -> dict[str, float]:
 
 
 def _ssp_by_ecos(system: Path) -> dict[str, float]:
-    with _ecos()(ssp_path=str(system), step_size=COUPLED) as run:
+    alone = system.with_stem("alone")
+    with zipfile.ZipFile(system) as whole, zipfile.ZipFile(alone, "w") as file:
+        for name in whole.namelist():
+            file.writestr(name, whole.read(ELEMENTS if name == "SystemStructure.ssd" else name))
+    with _ecos()(ssp_path=str(alone), step_size=COUPLED) as run:
         run.init()
         run.step(round(HOUR / COUPLED))
         return {"oil.T": run.get_real("gearbox::oil.T"), "room.T": run.get_real("room::room.T")}

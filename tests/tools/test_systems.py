@@ -30,10 +30,13 @@ def system(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_file_is_sound(system: Path) -> None:
     with zipfile.ZipFile(system) as file:
-        assert file.namelist()[0] == "SystemStructure.ssd"
         names = [f"resources/{name}" for name in ("gearbox", "cooler", "room")]
-        assert set(file.namelist()[1:]) == {f"{name}{ending}" for name in names for ending in (".fmu", ".ssv")}
+        held = {f"{name}{ending}" for name in names for ending in (".fmu", ".ssv")}
+        assert {*file.namelist()} == {"SystemStructure.ssd", "Elements.ssd", *held}
         content = file.read("SystemStructure.ssd")
+        alone = etree.fromstring(file.read("Elements.ssd"))  # libcosim and ecos know connections of elements alone
+        assert all(c.get("startElement") for c in alone.iter("{*}Connection"))
+        assert len(list(alone.iter("{*}Connection"))) == 4 + 2 and alone.find("{*}System/{*}Connectors") is None
         sets = {name: file.read(f"resources/{name}.ssv") for name in ("gearbox", "cooler", "room")}
     schema = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureDescription.xsd"
     etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.fromstring(content))
