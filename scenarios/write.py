@@ -70,7 +70,7 @@ def _sensor(instrument: Instrument, units: Mapping[str, Quantity]) -> dict[str, 
     found |= {"magnitude": True} if instrument.magnitude and instrument.signs is None else {}
     spreads = {key: getattr(instrument, key) for key in ("repeat_sd", "offset_sd")}
     unit = units[instrument.reads].unit
-    return found | {key: _value(sd, unit) for key, sd in spreads.items() if sd is not None}
+    return found | {key: str(_value(sd, unit)) for key, sd in spreads.items() if sd is not None}
 
 
 def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:

@@ -10,6 +10,8 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
+import casadi as ca
+
 from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.dry_sump import fling_off, jet_torque
@@ -129,7 +131,10 @@ class OilPump(OilLine):
     C_s = Parameter("1", "slip coefficient: oil that leaks back inside", default=0.0, at_least=0.0)
     dp = Output("Pa", "pressure that it adds", nominal=1e5)
     P = Output("W", "power from the shaft into the oil", nominal=100.0)
-    eta = Output("1", "efficiency: hydraulic power, less what leaks back, over power from the shaft; 0 at rest")
+    eta = Output(
+        "1",
+        "efficiency: hydraulic power, less what leaks back, over power; 0 at rest, or driven by the oil",
+    )
 
     def resistance(self) -> Equation:
         """The flow follows the speed."""
@@ -149,7 +154,7 @@ class OilPump(OilLine):
         yield equation("power", self.P, self.shaft.tau * w)
         oil = self.lubricant
         used = self.m_flow / oil.rho - pump_slip(self.dp, D, oil.nu * oil.rho, self.C_s)
-        yield equation("efficiency", self.eta, self.dp * used * self.P / (self.P**2 + P_REST**2))
+        yield equation("efficiency", self.eta, ca.fmax(self.dp * used, 0.0) * self.P / (self.P**2 + P_REST**2))
         yield from super().equations()
 
 

@@ -16,7 +16,8 @@ def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     flat = spec.flat()
     batch = Batch(flat)
     torques = [q.name for q in flat.inputs if q.name.endswith(".tau")]
-    load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"]))
+    pressures = [q.name for q in flat.parameters if q.name.endswith(".p_bypass")]
+    load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"] + pressures))
     room = next(q for q in flat.inputs if q.name == f"{spec.of_type('Room')[0]}.T")
     speed = next(q for q in flat.inputs if q.name.endswith(".w"))
     duty = join_phases(
