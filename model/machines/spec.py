@@ -52,12 +52,8 @@ class Spec:
 
     def flat(self) -> FlatModel:
         """The flat model; made once of equal specs. Raises GearheatError where there is none."""
-        return _flat(_Whole(self, repr((self.name, self.doc, self.parts, self.connections)), self.used))
-
-    @property
-    def used(self) -> tuple[type[Component] | None, ...]:
-        """The class of each part, None of an unknown one."""
-        return tuple(self.types.get(part.type) for part in self.parts)
+        classes = tuple(self.types.get(part.type) for part in self.parts)
+        return _flat(_Whole(self, repr((self.name, self.doc, self.parts, self.connections)), classes))
 
     def part(self, name: str) -> PartSpec:
         """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
@@ -150,7 +146,7 @@ class _Whole:
 
     spec: Spec = field(compare=False)
     text: str
-    types: tuple[type[Component] | None, ...]
+    classes: tuple[type[Component] | None, ...]
 
 
 @lru_cache(KEPT)
