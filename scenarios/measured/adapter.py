@@ -176,7 +176,8 @@ class Adapter:
         """One case of an entry, or one for all that its columns `each` hold; {0} in it is the first of these."""
         names = entry.get("each", "").split()
         for values in sorted(set(zip(*(rows[name].tolist() for name in names), strict=True))) if names else [()]:
-            said = {key: text.format(*values) for key, text in entry.items() if isinstance(text, str)}
+            conditions = ("asked", "reference", "siblings")  # values as literals: no text of a file is code
+            said = {key: entry[key].format(*map(repr, values)) for key in conditions if key in entry}
             asked, reference = _where(said["asked"], rows), _where(said["reference"], rows)
             if not _length(asked) or not _length(reference):
                 continue
@@ -184,7 +185,7 @@ class Adapter:
             others = sorted(set(healthy["machine"]) - set(asked["machine"])) if healthy else []
             parts = [asked, reference, *(_where(f"machine == {str(m)!r}", healthy or {}) for m in others)]
             first, second, *rest = (self.written(part, entry) for part in parts)
-            yield Case(said["name"], first, second, tuple(rest))
+            yield Case(entry["name"].format(*values), first, second, tuple(rest))
 
 
 def adapter(name: str) -> Adapter:
