@@ -23,11 +23,13 @@ from scipy.integrate import solve_ivp
 from ...fmu.export import export
 from ...fmu.play import Player
 from ...model.core.flat import FlatModel
+from ...model.errors import DataError
 from ...model.run.algebra import algebra
 from ...model.run.fast import Fast
 from ...model.run.schedule import Schedule, join_phases
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
+from ..show.console import note
 from ..solve.settings import flat_of
 from .costs import STAGE, STAGES, from_c, growth, massless
 from .exchange import Exchange, exchanged
@@ -77,12 +79,15 @@ def measure(
         bare = export(flat, Path(folder) / "bare.fmu", audit=False)
         peers = _peers(flat, duty, ends, truth, (fmu, bare), speed, found["warmup_60_error_K"])
         if pythonfmu:
-            peers[PYTHONFMU] = Peer(*_pythonfmu(flat, duty, ends, truth, Path(folder)), None)
+            try:
+                peers[PYTHONFMU] = Peer(*_pythonfmu(flat, duty, ends, truth, Path(folder)), None)
+            except DataError as problem:  # it crashes now and then; what else was measured stays
+                note(f"left out: {problem}")
     base = found["warmup_60_s"]
     found["peers"] = {name: {**peer._asdict(), "over_fmu_from_c": peer.s / base} for name, peer in peers.items()}
     for method in METHODS:
         found[f"{method.lower()}_ratio"] = found["peers"][OF_FMU.format(method)]["over_fmu_from_c"]
-    if pythonfmu:
+    if PYTHONFMU in peers:
         found["pythonfmu_ratio"] = found["peers"][PYTHONFMU]["over_fmu_from_c"]
     found["growth"] = [growth(n) for n in chains]
     found["massless"] = [massless(n) for n in conductors]
