@@ -74,16 +74,29 @@ def log_bayes_factors(
         low, high: bounds of the size (k,)
         widths: standard deviations of the size's prior, all as likely
     """
-    found = []
-    for width in widths:
-        v = width**2
-        post = v / (1 + v * q)
-        mean = post * s
-        inside = mass_inside(mean, np.sqrt(post), low, high)
-        prior = mass_inside(np.zeros_like(low), np.full_like(low, width), low, high)
-        log = 0.5 * s * mean - 0.5 * np.log1p(v * q)
-        found.append(log + np.log(np.maximum(inside, 1e-300)) - np.log(np.maximum(prior, 1e-300)))
-    return np.asarray(np.logaddexp.reduce(found) - np.log(len(widths)))
+    logs, inside = by_width(s, q, low, high, widths)
+    return averaged(logs, inside, prior_mass(low, high, widths))
+
+
+def by_width(
+    s: np.ndarray | float, q: np.ndarray | float, low: np.ndarray, high: np.ndarray, widths: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same at each width (w, ..., k): without bounds, and the share of the posterior that lies inside them."""
+    v = widths.reshape(-1, *[1] * np.ndim(s)) ** 2
+    post = v / (1 + v * q)
+    return 0.5 * s**2 * post - 0.5 * np.log1p(v * q), mass_inside(post * s, np.sqrt(post), low, high)
+
+
+def prior_mass(low: np.ndarray, high: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """Share of the prior inside the bounds at each width (w, k)."""
+    return mass_inside(0.0, widths[:, None], low, high)
+
+
+def averaged(logs: np.ndarray, inside: np.ndarray, prior: np.ndarray) -> np.ndarray:
+    """Log Bayes factors over all widths, of what `by_width` and `prior_mass` say."""
+    prior = prior.reshape(len(prior), *[1] * (logs.ndim - prior.ndim), -1)
+    whole = np.exp(logs - (most := logs.max(axis=0))) * np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)
+    return np.asarray(most + np.log(whole.mean(axis=0)))
 
 
 def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:

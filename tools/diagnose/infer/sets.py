@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from .evidence import White, log_bayes_factors, mass_inside, split_error
+from .evidence import White, averaged, by_width, mass_inside, prior_mass, split_error
 from .prior import SAME, Prior, kind
 from .terms import Term
 
@@ -122,7 +122,11 @@ class Table:
         self.families = np.array([t.family for t in linear.terms])
         self.kinds = np.array([kind(t.name) if t.formula else "" for t in linear.terms])
         gross = np.array([t.aside is not None for t in own])
-        self.groups = [np.flatnonzero(group) for group in (~gross, gross) if group.any()]
+        #: Sizes of the same widths: their numbers, the widths, and the prior's mass inside the bounds.
+        self.groups = []
+        for k in (np.flatnonzero(group) for group in (~gross, gross) if group.any()):
+            widths = own[int(k[0])].widths
+            self.groups.append((k, widths, prior_mass(self.low[k], self.high[k], widths)))
 
     def named(self, members: Sequence[int]) -> list[str]:
         """The causes of a set."""
@@ -172,11 +176,9 @@ class Whitened:
         tie = turned.T @ self.W
         s, q = self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12)
         logs, at = np.empty(len(s)), np.empty(len(s))
-        for k in self.table.groups:
-            tried = self.table.linear.terms[int(k[0])].widths
-            logs[k] = log_bayes_factors(s[k], q[k], self.table.low[k], self.table.high[k], tried)
-            each = [0.5 * (s[k] * w) ** 2 / (1 + w**2 * q[k]) - 0.5 * np.log1p(w**2 * q[k]) for w in tried]
-            at[k] = tried[np.argmax(each, axis=0)]
+        for k, tried, prior in self.table.groups:
+            each, inside = by_width(s[k], q[k], self.table.low[k], self.table.high[k], tried)
+            logs[k], at[k] = averaged(each, inside, prior), tried[np.argmax(each, axis=0)]
         return logs, at, log
 
     def scored(self, members: Sequence[int], widths: Sequence[float]) -> TermSet:
@@ -186,10 +188,8 @@ class Whitened:
             for i, k in enumerate(members):
                 s, q = self._one(k, [*members[:i], *members[i + 1 :]], [*own[:i], *own[i + 1 :]])
                 tried, low, high = self.table.linear.terms[k].widths, self.table.low[k], self.table.high[k]
-                v = tried**2
-                logs = 0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)
-                post = v / (1 + v * q)
-                inside = mass_inside(post * s, np.sqrt(post), low, high) / mass_inside(0.0, tried, low, high)
+                logs, inside = by_width(s, q, low, high, tried)
+                inside = inside / mass_inside(0.0, tried, low, high)
                 logs = logs + np.log(np.maximum(inside, 1e-300))
                 best = int(np.argmax(logs))
                 own[i] = float(tried[best])

@@ -67,7 +67,8 @@ class Options:
         seed: of the draws
         most: causes that may act together
         wanted: causes that are fitted however they look
-        critical: log prior odds of nothing against one cause, where they are known; draws of the null tell them else
+        critical: log prior odds of nothing against one cause, where they and gross readings are known; else draws of
+            the null tell them
     """
 
     alpha: float = 0.05
@@ -119,9 +120,10 @@ class Weighing:
         progress("effects of all causes", 0.1)
         first = screen.look(problem, null, self.formulas)
         self.critical = FIRST
-        leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
-        self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
-        self.null, self.first = null, first
+        self.problem, self.null, self.first = problem, null, first
+        if options.critical is None:  # else gross readings are known as well
+            leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
+            self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
         if self.problem.aside != problem.aside:
             self.null = fitted(self.problem, (), null.look.z)
             self.first = screen.look(self.problem, self.null, self.formulas)
