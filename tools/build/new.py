@@ -212,7 +212,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, co
         "doc": doc,
         "speed": speed,
         "efficiency": efficiency,
-        "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
+        "load": made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
         "of_oil": catalogue("oil")[oil].values,
         "bath": sizing.bath(made),
