@@ -213,10 +213,11 @@ class _Loader:
 
     def _operating_point(self) -> dict[str, float]:
         where = f"{self.file} [operating_point]"
-        sources, problems = sources_of(where, self.table.operating_point)
+        told = {key: value for key, value in self.table.operating_point.items() if key != DRIVES}
+        sources, problems = sources_of(where, told)
         self.problems += problems
         self.value_sources |= sources
-        written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in (*ABOUT, DRIVES)}))
+        written = dict(paths({k: v for k, v in told.items() if k not in ABOUT}))
         point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
