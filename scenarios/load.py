@@ -100,6 +100,8 @@ def _find(name_or_path: str | Path) -> Path:
     names = list_rigs()
     beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
     close = suggestion(str(name_or_path), [*names, *beside]) or suggestion(f"{name_or_path}.toml", beside)
+    if path.suffix == ".toml" and not close:
+        return path
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
 
 

@@ -166,7 +166,15 @@ class Component:
         for relation, value in find_broken([r for r, _ in known], [v for _, v in known]):
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
-            yield relation.problem(value, given)
+            yield relation.problem(value, given) + self.way_out(relation.name)
+
+    def way_out(self, relation: str) -> str:
+        """A value with which a relation that does not hold would, as a sentence behind its remedy; "" for none.
+
+        Args:
+            relation: its name
+        """
+        return ""
 
     def number_at(self, expression: Any, values: Mapping[str, float]) -> float:
         """Value of an expression of the parameters.

@@ -335,7 +335,7 @@ def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wa
     given = ((centre, "m", "--centre-distance"), (volume, "m3", "--oil-volume"))
     size, oil = (None if text is None else _positive(text, unit, name) for text, unit, name in given)
     if housing is None or not (sides := re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing)):
-        return Wanted(size, None, housing and _positive(housing, "m2", "--housing"), oil)
+        return Wanted(size, None, None if housing is None else _positive(housing, "m2", "--housing"), oil)
     box = tuple(_positive(f"{side} {sides[4]}", "m", "--housing") for side in sides.groups()[:3])
     return Wanted(size, box, None, oil)
 

@@ -12,9 +12,6 @@ from typing import Annotated, Any, TypeVar, cast, get_type_hints
 import gearheat as gh
 import typer
 
-from ...model.errors import ScenarioError
-from ...model.units import refuse_comma
-
 C = TypeVar("C", bound=Callable[..., None])
 
 TEXTS: dict[str, dict[str, Any]] = tomllib.loads(
@@ -63,10 +60,13 @@ def _option(about: str | Mapping[str, Any], type_: Any = str) -> Any:
     return kind(*told.pop("flags", ()), **told)
 
 
-def _number(text: str) -> float:
-    """A number as it is written."""
+def _number(text: str | float) -> float:
+    """A number as it is written, or its default."""
+    from ...model.errors import ScenarioError
+    from ...model.units import refuse_comma
+
     try:
-        refuse_comma(text, "it")
+        refuse_comma(str(text), "it")
         return float(text)
     except ScenarioError as error:
         raise typer.BadParameter(str(error)) from None

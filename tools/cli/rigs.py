@@ -11,8 +11,7 @@ from typing import Any
 import gearheat as gh
 
 from ..show import console
-from ..show.notes import print_outside, print_stacked, print_unchecked
-from ..solve.steady import PLURAL
+from ..show.notes import PLURAL, print_outside, print_stacked, print_unchecked
 
 
 def new(
@@ -37,7 +36,7 @@ def new(
     path = out or Path(f"{name}.toml")
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
-    sizes = {"centre_distance": centre_distance, "housing": housing, "oil_volume": oil_volume}
+    sizes: dict[str, Any] = {"centre_distance": centre_distance, "housing": housing, "oil_volume": oil_volume}
     rig = gh.new(name, **plate, **chosen, **sizes, motor_heat=motor_heat, out=path)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:

@@ -19,14 +19,13 @@ from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
+from ..show.notes import PLURAL
 from ..show.picture import Picture
 from .settings import adjust, find_unchecked, flat_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-#: Roles of parts that lose power, as several are called.
-PLURAL = {"bearing": "bearings", "seal": "seals"}
 #: Temperature of the oil up to which gear units are rated thermally [K].
 RATED = 273.15 + 95.0
 #: What it is.
