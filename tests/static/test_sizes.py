@@ -1,4 +1,4 @@
-"""Modules stay below 400 lines, bodies of functions below 60, of laws below 13 lines."""
+"""Modules stay below 400 lines, bodies of functions below 60, of laws below 13 lines; functions take few parameters."""
 
 import ast
 from collections.abc import Iterator
@@ -18,6 +18,17 @@ def body_lines(function: ast.FunctionDef) -> int:
     return body[-1].end_lineno - body[0].lineno + 1 if body else 0
 
 
+def parameters(function: ast.FunctionDef) -> int:
+    """How many a caller has to know: options by name, which have a default, and `self` are not counted."""
+    own = function.args
+    given = [
+        *own.posonlyargs,
+        *own.args,
+        *(a for a, d in zip(own.kwonlyargs, own.kw_defaults, strict=True) if d is None),
+    ]
+    return len([a for a in given if a.arg not in ("self", "cls")])
+
+
 def test_no_module_is_longer_than_400_lines() -> None:
     lengths = {name_of(path): len(text_of(path).splitlines()) for path in modules()}
     assert not {name: length for name, length in lengths.items() if length > 400}
@@ -29,6 +40,15 @@ def test_no_function_is_longer_than_60_lines() -> None:
         for path in modules()
         for function in functions(path)
         if body_lines(function) >= 60
+    ]
+
+
+def test_no_function_of_the_diagnosis_takes_more_than_six_parameters() -> None:
+    assert not [
+        f"{name_of(path)}: {function.name} takes {parameters(function)}"
+        for path in modules("tools/diagnose")
+        for function in functions(path)
+        if parameters(function) > 6
     ]
 
 

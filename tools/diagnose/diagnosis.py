@@ -21,7 +21,7 @@ from .answer.predict import predict
 from .answer.quality import average_residuals, check_data
 from .infer.found import Found
 from .infer.screen import changes, samples
-from .infer.weigh import weigh
+from .infer.weigh import Options, weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report.extension import calibrated, rig_file
@@ -65,11 +65,8 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
         weigh(
             made.problem,
             made.formulas,
-            request.alpha,
-            request.seed,
-            request.causes,
+            Options(request.alpha, request.seed, request.causes, logs.causes if logs else ()),
             lambda stage, done: then(stage, 0.05 + 0.75 * done),
-            logs.causes if logs else (),
         )
     )
     if logs:
@@ -187,7 +184,5 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = simulate_design(
-        made, problem, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value)
-    )
+    found = simulate_design(made, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value))
     return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

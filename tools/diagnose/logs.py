@@ -19,7 +19,7 @@ from .answer.numbers import array
 from .infer.found import Found, Hypothesis
 from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question
 from .infer.problem import Aside
-from .infer.weigh import weigh
+from .infer.weigh import Options, weigh
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
@@ -34,6 +34,20 @@ DAY = 86400.0
 QUIET = 0.98
 #: Parts of the spans that are left out in turn.
 FOLDS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Logs:
+    """Logs in question, and those of healthy machines: of this one, and of others of its type."""
+
+    logs: Sequence[Log]
+    reference: Sequence[Log] = ()
+    siblings: Sequence[Log] = ()
+
+    @property
+    def healthy(self) -> tuple[Log, ...]:
+        """Of all machines."""
+        return (*self.reference, *self.siblings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,23 +90,26 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
                 problems.extend(error.problems)
         return found
 
-    logs, reference, siblings = (read(p) for p in (request.logs, request.reference_logs, request.sibling_logs))
+    data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
     if problems:
         raise DataError(problems)
-    _check(logs, [*reference, *siblings])
-    scenario = inputs.scenario
-    known = fleet(scenario, reference, siblings, logs[0], lambda stage, share: progress(stage, 0.02 + 0.4 * share))
-    asked = question(known, logs, lambda stage, share: progress(stage, 0.42 + 0.2 * share))
-    return composed(inputs, known, asked, logs, reference, siblings, progress)
+    _check(data)
+    known = fleet(
+        inputs.scenario,
+        data.reference,
+        data.siblings,
+        data.logs[0],
+        lambda stage, share: progress(stage, 0.02 + 0.4 * share),
+    )
+    asked = question(known, data.logs, lambda stage, share: progress(stage, 0.42 + 0.2 * share))
+    return composed(inputs, known, asked, data, progress)
 
 
 def composed(
     inputs: Inputs,
     known: Fleet,
     asked: Question,
-    logs: Sequence[Log],
-    reference: Sequence[Log] = (),
-    siblings: Sequence[Log] = (),
+    logs: Logs,
     progress: Progress = lambda stage, share: None,
 ) -> LogDiagnosis:
     """The answer, from what healthy logs and those in question say.
@@ -101,24 +118,29 @@ def composed(
         inputs: rig, card and options
         known: what the healthy logs say
         asked: what the logs in question say
-        logs, reference, siblings: as they were read
+        logs: as they were read
         progress: called with (stage, fraction done)
     """
-    request, problem = inputs.request, problem_of(known, asked, logs)
+    request, problem = inputs.request, problem_of(known, asked, logs.logs)
     data, causes = problem.data, moves(known.knobs)
     names, read = [s.name for s in data.campaign.sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, read) for cause in causes for form in cause.forms)
     scenario = inputs.scenario
     made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, data.plant, problem, {})
     found = temper(
-        weigh(problem, formulas, request.alpha, request.seed, request.causes, lambda t, p: progress(t, 0.62 + 0.2 * p))
+        weigh(
+            problem,
+            formulas,
+            Options(request.alpha, request.seed, request.causes),
+            lambda t, p: progress(t, 0.62 + 0.2 * p),
+        )
     )
     decision = decide(found)
-    told = _findings(made, found, decision, inputs, logs, reference, siblings)
+    told = _findings(made, found, decision, inputs, logs)
     if decision.verdict != "consistent" and not request.quick:
         held = _gain(known, asked, found, problem.spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         told = told.model_copy(update={"gain": held})
-    rows, drawn = _pictures(known, asked, decision, problem.spans, logs[0].read)
+    rows, drawn = _pictures(known, asked, decision, problem.spans, logs.logs[0].read)
     told = told.model_copy(update={"rows": rows, "pictures": drawn})
     return LogDiagnosis(found, decision, with_words(told))
 
@@ -128,11 +150,10 @@ def _findings(
     found: Found,
     decision: Decision,
     inputs: Inputs,
-    logs: Sequence[Log],
-    reference: Sequence[Log],
-    siblings: Sequence[Log],
+    data: Logs,
 ) -> f.Findings:
     """The findings without pictures and words."""
+    logs = data.logs
     segments = sum(int(log.stretch.max()) + 1 for log in logs)
     return f.Findings(
         **compose.common(made, found, decision),
@@ -141,9 +162,9 @@ def _findings(
             rig=made.scenario.name,
             readings=sum(int(np.isfinite(log.values[s.name]).sum()) for log in logs for s in log.read),
             tests=segments,
-            reference=", ".join(log.name for log in (*reference, *siblings)),
-            logs=tuple(log.name for log in (*logs, *reference, *siblings)),
-            log_rows=sum(log.n for log in (*logs, *reference, *siblings)),
+            reference=", ".join(log.name for log in data.healthy),
+            logs=tuple(log.name for log in (*logs, *data.healthy)),
+            log_rows=sum(log.n for log in (*logs, *data.healthy)),
             segments=segments,
             seed=inputs.request.seed,
         ),
@@ -155,14 +176,14 @@ def _findings(
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        warnings=tuple(filter(None, [_lacking(reference, siblings)])),
+        warnings=tuple(filter(None, [_lacking(data)])),
     )
 
 
-def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:
+def _check(data: Logs) -> None:
     """Logs go together: the same step, sensors and kind of time."""
-    first, problems = logs[0], []
-    for log in (*logs[1:], *healthy):
+    first, problems = data.logs[0], []
+    for log in (*data.logs[1:], *data.healthy):
         if abs(log.step - first.step) > 1e-6 * first.step:
             problems.append(f"{log.name}: samples every {log.step:g} s, {first.name} every {first.step:g} s. Resample.")
         missing = {s.name for s in first.sensors} - {s.name for s in log.sensors}
@@ -176,11 +197,11 @@ def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:
         raise DataError(problems)
 
 
-def _lacking(reference: Sequence[Log], siblings: Sequence[Log]) -> str:
-    if reference and siblings:
+def _lacking(data: Logs) -> str:
+    if data.reference and data.siblings:
         return ""
     lacks = " and ".join(
-        name for name, logs in (("--reference-logs", reference), ("--sibling-logs", siblings)) if not logs
+        name for name, logs in (("--reference-logs", data.reference), ("--sibling-logs", data.siblings)) if not logs
     )
     return f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
 
@@ -214,7 +235,7 @@ def _gain(
     for k in range(FOLDS):
         rows = np.arange(k, spans.campaign.n, FOLDS)
         aside = frozenset(Aside(int(i)) for i in np.flatnonzero(np.isin(spans.row, rows)))
-        kept = weigh(found.problem.without(aside), found.formulas, critical=found.critical).hypotheses[0]
+        kept = weigh(found.problem.without(aside), found.formulas, Options(critical=found.critical)).hypotheses[0]
         chosen.update(kept.causes)
         held = np.isin(asked.span, rows)
         after[held] += _moves(spans, kept)[asked.span[held]]

@@ -103,6 +103,18 @@ def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None
     assert 0.0 <= decision.marginal[TRUE].mc_error < 0.5
 
 
+def test_a_cause_is_the_answer_whether_or_not_another_acts_beside_it(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    both = next(h for h in found.hypotheses if len(h.causes) == 2 and TRUE in h.causes)
+    alone = next(h for h in found.hypotheses if h.causes == (TRUE,))
+    share = [0.6 * (h is alone) + 0.35 * (h is both) + 0.05 * (not h.causes and not h.extras) for h in found.hypotheses]
+    decision = decide(replace(found, probabilities=np.array(share)))
+    assert decision.verdict == "explained"
+    assert [a.causes for a in decision.answers] == [(TRUE,)]
+    assert decision.answers[0].chance.probability == pytest.approx(0.95)
+    assert decision.joints[0].chance.probability == pytest.approx(0.6)
+
+
 def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
     decision = decide(clean[1])
     assert decision.verdict == "consistent"

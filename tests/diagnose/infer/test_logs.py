@@ -12,7 +12,7 @@ from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.diagnose.answer.findings import Findings
 from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.infer.logs import Fleet, filter_of, fleet, question
-from gearheat.tools.diagnose.logs import LogDiagnosis, composed
+from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed
 from gearheat.tools.diagnose.request import Inputs, Request
 from made_logs import MACHINES, YEARS, differing, made
 
@@ -65,7 +65,7 @@ class Farm:
         parts = [self.log(0, 3.0 + q / 4, seed + q, change[q]) for q in range(ASKED)]
         logs = [self.joined(parts, "asked")]
         inputs = Inputs(Request("wind_turbine", quick=True), self.scenario, Card(), None, None, None)
-        return composed(inputs, self.fleet, question(self.fleet, logs), logs)
+        return composed(inputs, self.fleet, question(self.fleet, logs), Logs(logs))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,15 @@ import re
 import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, OFFSET, ambiguous, cause, clean, explained, spoiled, unexplained
 from gearheat.tools.diagnose.answer.evidence import DataQuality, Estimate, NuisanceOff, ResidualMean
-from gearheat.tools.diagnose.answer.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
+from gearheat.tools.diagnose.answer.findings import (
+    Alarm,
+    Answer,
+    CauseSet,
+    Hypothesis,
+    Played,
+    Remainder,
+    RemainderChannel,
+)
 from gearheat.tools.diagnose.report import phrases
 from gearheat.tools.diagnose.report.page import render
 from gearheat.tools.diagnose.report.phrases import name_of, names_of
@@ -62,7 +70,14 @@ def test_look_alikes_that_the_data_rule_out_are_not_left_open() -> None:
     one = Answer(causes=((CHURNING,),), probability=0.96)
     alike = CauseSet(causes=(CHURNING, "losses.windage", "sensor.torque.offset"), distance=0.8)
     said = explained(answers=(one,), sets=(alike,)).says.cannot_be
-    assert "cannot tell churning of the oil from windage." in said
+    assert "cannot tell churning of the oil from windage but by how usual the sizes are." in said
+
+
+def test_what_may_act_beside_the_answer_is_left_open() -> None:
+    both = Hypothesis(causes=(CHURNING, OFFSET), probability=0.3)
+    made = explained(hypotheses=(Hypothesis(causes=(CHURNING,), probability=0.67), both))
+    assert "Whether others act as well is left open: zero error" in made.says.verdict
+    assert "(30 %)" in made.says.verdict
 
 
 def test_what_is_outside_the_library_names_its_channel() -> None:

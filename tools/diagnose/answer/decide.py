@@ -91,10 +91,11 @@ def decide(found: Found) -> Decision:
     verdict: Verdict = "consistent"
     answers: list[Joint] = []
     if chances.nothing < 0.5 and wrong:
-        sure = wrong[0].chance.probability > SURE
-        verdict = "unexplained" if wrong[0].causes == (UNEXPLAINED,) else "explained" if sure else "ambiguous"
+        first = _whatever_else(wrong[0], found, chances)
+        sure = first.chance.probability > SURE
+        verdict = "unexplained" if first.causes == (UNEXPLAINED,) else "explained" if sure else "ambiguous"
         total = np.cumsum([j.chance.probability for j in wrong])
-        answers = wrong[: 1 if sure else 1 + int(np.searchsorted(total, SURE * (1 - chances.nothing)))]
+        answers = [first] if sure else wrong[: 1 + int(np.searchsorted(total, SURE * (1 - chances.nothing)))]
     leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and not h.extras)
     members: dict[str, list[Member]] = {}
     for h, p in zip(found.hypotheses, found.probabilities, strict=True):
@@ -105,6 +106,13 @@ def decide(found: Found) -> Decision:
     whole = {c: tuple(own) for c, own in members.items()}
     adequacy = p_adequacy(found, leader)
     return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
+
+
+def _whatever_else(joint: Joint, found: Found, chances: _Chances) -> Joint:
+    """The same causes with the chance that they act, whether or not others act as well."""
+    keys = answer_keys(found)
+    own = set(keys[next(i for i, h in enumerate(found.hypotheses) if h is joint.best)])
+    return replace(joint, chance=chances.of(np.array([own <= set(key) for key in keys])))
 
 
 def temper(found: Found) -> Found:

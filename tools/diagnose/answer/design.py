@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -12,7 +12,7 @@ from scipy.linalg import block_diag
 
 from ..infer.evidence import White
 from ..infer.found import Found
-from ..infer.problem import Acting, Look, Noise, Problem
+from ..infer.problem import Acting, Look, Noise
 from ..infer.screen import limits
 from ..model.noise import terms
 from ..model.observe import Observed, Seen
@@ -140,7 +140,6 @@ class Design:
 
 def simulate_design(
     setting: Setting,
-    problem: Problem,
     look: Look,
     noise: Noise,
     candidates: Sequence[Acting],
@@ -150,15 +149,15 @@ def simulate_design(
     """A campaign with experiments behind it.
 
     Args:
-        setting: the rig
-        problem: the campaign
+        setting: the rig and its campaign
         look: at the rig as calibrated, without a cause
         noise: scatter there
         candidates: forms of the causes
         effects: theirs in the campaign (m, k)
         experiments: to try
     """
-    runs = {e.id: r for e in experiments if e.tests and (r := _run(setting, problem, look, candidates, e)) is not None}
+    problem = setting.problem
+    runs = {e.id: r for e in experiments if e.tests and (r := _run(setting, look, candidates, e)) is not None}
     checks = [(e.id, check) for e in experiments for check in e.checks]
     campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
     seen = [*look.seen, *(s for _, s, _ in runs.values())]
@@ -199,10 +198,10 @@ def _with_checks(
 
 
 def _run(
-    setting: Setting, problem: Problem, look: Look, candidates: Sequence[Acting], experiment: Experiment
+    setting: Setting, look: Look, candidates: Sequence[Acting], experiment: Experiment
 ) -> tuple[Observed, Seen, np.ndarray] | None:
     """The tests of an experiment simulated, with the effects of the causes (m, k); None where the machine cannot."""
-    data, z, point = problem.data, np.append(look.z, 0.0), setting.scenario.operating_point
+    data, z, point = setting.problem.data, np.append(look.z, 0.0), setting.scenario.operating_point
     campaign = build_tests(data.campaign, experiment)
     o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
     shown = o.at(z, []).shown
@@ -243,10 +242,8 @@ def extend_design(setting: Setting, found: Found, causes: Collection[str], exper
     """The design of a search's data for some causes, with experiments behind it."""
     places = [k for k, c in enumerate(found.first.candidates) if c.id in causes]
     candidates = [found.first.candidates[k] for k in places]
-    null = found.null
-    return simulate_design(
-        setting, found.problem, null.look, null.noise, candidates, found.first.effects[:, places], experiments
-    )
+    made, null = replace(setting, problem=found.problem), found.null
+    return simulate_design(made, null.look, null.noise, candidates, found.first.effects[:, places], experiments)
 
 
 def rank(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:

@@ -250,8 +250,8 @@ class Findings(Model):
 
     schema_: Literal["gearheat.diagnosis/2"] = Field(default="gearheat.diagnosis/2", alias="schema")
     verdict: Verdict = Field(
-        description="consistent: nothing beyond the stated accuracies; explained: one answer > 0.9; "
-        "ambiguous: several are needed for 0.9; unexplained: an alarm, most probably outside the library"
+        description="consistent: nothing beyond the stated accuracies; explained: one answer > 0.9, whatever else "
+        "acts; ambiguous: several are needed for 0.9; unexplained: an alarm, most probably outside the library"
     )
     says: Said = Said()
     about: About = About()

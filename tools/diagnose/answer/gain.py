@@ -15,6 +15,7 @@ from ....model.errors import SolveError
 from ....scenarios.measured.table import Campaign
 from ..infer.foresee import Foreseen, foresee
 from ..infer.found import Found
+from ..infer.weigh import Options
 from ..model.observe import Observed
 from . import channels
 from .findings import Gain
@@ -66,7 +67,7 @@ def _fold(found: Found, rows: np.ndarray, seed: int) -> Foreseen:
     """Everything anew without the readings of some rows, and what it says of them."""
     problem = found.problem
     held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
-    return foresee(problem, found.formulas, held, found.critical, seed, MOST)
+    return foresee(problem, found.formulas, held, Options(seed=seed, most=MOST, critical=found.critical))
 
 
 def _gain(

@@ -18,7 +18,7 @@ from .evidence import split_error
 from .fit import Fit, prior_precision
 from .found import Extra
 from .problem import Aside, Problem
-from .weigh import Weighing
+from .weigh import Options, Weighing
 
 #: What is looked for, for a progress that nobody is told.
 STAGE = "sets of causes"
@@ -45,24 +45,20 @@ class Foreseen:
     causes: tuple[str, ...]
 
 
-def foresee(
-    problem: Problem, formulas: Sequence[Formula], held: np.ndarray, critical: float, seed: int, most: int
-) -> Foreseen:
+def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, options: Options) -> Foreseen:
     """Everything anew without some readings, and how far it is off there.
 
     Args:
         problem: of all data
         formulas: all forms of all causes
         held: entries of readings that are left out (k,)
-        critical: log prior odds of nothing against one cause
-        seed: of the draws
-        most: causes that may act together
+        options: how hypotheses are weighed; the prior odds are those of all data
 
     Raises:
         SolveError: the model cannot be run without a cause
     """
-    own = Weighing(problem.without(problem.aside | {Aside(int(i)) for i in held}), formulas, seed, most)
-    own.critical = critical
+    own = Weighing(problem.without(problem.aside | {Aside(int(i)) for i in held}), formulas, options)
+    own.ask_alarm()
     own.keep_null()
     found, linear = own.search(own.null, own.first, STAGE, 0.0), own.linear
     own.fit_sets(found, own.null, 0.0, 1)

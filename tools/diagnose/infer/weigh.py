@@ -58,45 +58,58 @@ class _Combination:
     log: float
 
 
+@dataclass(frozen=True)
+class Options:
+    """How hypotheses are weighed.
+
+    Args:
+        alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
+        seed: of the draws
+        most: causes that may act together
+        wanted: causes that are fitted however they look
+        critical: log prior odds of nothing against one cause, where they are known; draws of the null tell them else
+    """
+
+    alpha: float = 0.05
+    seed: int = 0
+    most: int = 8
+    wanted: Collection[str] = ()
+    critical: float | None = None
+
+
+USUAL = Options()
+
+
+def _silent(stage: str, share: float) -> None:
+    """No progress."""
+
+
 def weigh(
     problem: Problem,
     formulas: Sequence[Formula],
-    alpha: float = 0.05,
-    seed: int = 0,
-    most: int = 8,
-    progress: Progress = lambda stage, share: None,
-    wanted: Collection[str] = (),
-    critical: float | None = None,
+    options: Options = USUAL,
+    progress: Progress = _silent,
 ) -> Found:
     """All hypotheses that count, weighed.
 
     Args:
         problem: data and model
         formulas: all forms of all causes
-        alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
-        seed: of the draws
-        most: causes that may act together
+        options: how
         progress: told of each stage and the share done
-        wanted: causes that are fitted however they look
-        critical: log prior odds of nothing against one cause, where they are known; draws of the null tell them else
     """
-    own = Weighing(problem, formulas, seed, most, progress)
-    own.ask_alarm(alpha, critical)
-    return own.run(wanted)
+    own = Weighing(problem, formulas, options, progress)
+    own.ask_alarm()
+    return own.run()
 
 
 class Weighing:
     """One run; arguments as for `weigh`."""
 
     def __init__(
-        self,
-        problem: Problem,
-        formulas: Sequence[Formula],
-        seed: int,
-        most: int,
-        progress: Progress = lambda stage, share: None,
+        self, problem: Problem, formulas: Sequence[Formula], options: Options, progress: Progress = _silent
     ) -> None:
-        self.whole, self.seed, self.most, self.progress = problem, seed, most, progress
+        self.whole, self.options, self.progress = problem, options, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
@@ -113,21 +126,21 @@ class Weighing:
             self.null = fitted(self.problem, (), null.look.z)
             self.first = screen.look(self.problem, self.null, self.formulas)
 
-    def ask_alarm(self, alpha: float, critical: float | None) -> None:
+    def ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
         weights = self.first.weights + [self.prior.share[c.id] for c in self.first.candidates]
         seen = float(logsumexp(self.first.log_bf + weights))
-        if critical is not None:
-            self.drawn, self.critical, self.p_any = np.zeros(0), critical, 0.0 if seen > critical else 1.0
+        if (known := self.options.critical) is not None:
+            self.drawn, self.critical, self.p_any = np.zeros(0), known, 0.0 if seen > known else 1.0
             return
-        self.drawn = screen.null_draws(self.first, weights, self.seed)
-        self.critical = float(np.quantile(self.drawn, 1 - alpha))
+        self.drawn = screen.null_draws(self.first, weights, self.options.seed)
+        self.critical = float(np.quantile(self.drawn, 1 - self.options.alpha))
         self.p_any = float((1 + (self.drawn >= seen).sum()) / (1 + len(self.drawn)))
 
-    def run(self, wanted: Collection[str]) -> Found:
+    def run(self) -> Found:
         """Everything."""
         self.keep_null()
-        self._fit_alone(self.null, self.first, wanted)
+        self._fit_alone(self.null, self.first, self.options.wanted)
         for k in range(LOOKS if self.p_any < QUIET else 1):
             best = self.leader().fit
             with suppress(SolveError):
@@ -188,7 +201,7 @@ class Weighing:
             return [float(s) for s in own.scales]
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, self.critical, self.most)
+        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, self.critical, self.options.most)
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
@@ -307,7 +320,7 @@ class Weighing:
             if not near:
                 break
             for k in near:
-                by = correction(self.problem, found[k].fit, self.seed)
+                by = correction(self.problem, found[k].fit, self.options.seed)
                 found[k] = replace(found[k], log_joint=found[k].log_joint + by.log, error=by.error)
             done.update(near)
         found.sort(key=lambda h: -h.log_joint)

@@ -162,9 +162,12 @@ class _Instruments:
         modes: Sequence[Mode],
         exposes: str,
         acts_on: str = "",
-        common: float = 1.0,
     ) -> Cause:
-        """A cause of this kind: `key` ends its identifier, `modes` are its forms, the others those of `Cause`."""
+        """A cause of this kind: `key` ends its identifier, `modes` are its forms, the others those of `Cause`.
+
+        One that is no constant error is met half as often.
+        """
+        common = 1.0 if key in CONSTANT else 0.5
         known = f"sensor.{self.name}.{key}"
         forms = self.forms(modes, size.name)
         return Cause(NAMES.get(known, known), doc, size, forms, exposes, acts_on=acts_on, common=common)
@@ -179,13 +182,13 @@ class _Instruments:
         yield self.gain()
         if self.at.both_ways:
             doc = f"The {words} errs with the direction of the power flow."
-            yield self.cause("by_direction", doc, self.size("reading less truth"), DIRECTIONS, HALVES, common=0.5)
+            yield self.cause("by_direction", doc, self.size("reading less truth"), DIRECTIONS, HALVES)
         if "order" in known:
             yield from self.over_time()
         if "mounting" in known:
             doc, size = f"The {words} errs anew with each mounting or filling.", "standard deviation of the errors"
             mode = Mode("", 1.0, _one, spread="mounting", turns=True)
-            yield self.cause("mounting", doc, self.size(size, signed=False), [mode], MOUNTINGS, "order", 0.5)
+            yield self.cause("mounting", doc, self.size(size, signed=False), [mode], MOUNTINGS, "order")
 
     def gain(self) -> Cause:
         """In proportion to the reading; a thermometer's from a fixed point."""
@@ -202,17 +205,17 @@ class _Instruments:
         words = self.kind.words
         size = self.size("error at the last test less that at the first", 1.3)
         yield self.cause(
-            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, DRIFTS, REPEAT, "order", 0.5
+            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, DRIFTS, REPEAT, "order"
         )
         size = self.size("error after the change less that before", 1.3)
         modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if self.at.both_ways)]
         total = sum(m.weight for m in modes)
         modes = [replace(m, weight=m.weight / total) for m in modes]
-        yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order", 0.5)
+        yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order")
         size = self.size("standard deviation of a step", 0.5, signed=False)
         mode = Mode("", 1.0, _one, spread="walk", turns=True)
         doc = f"The error of the {words} wanders from test to test."
-        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.5)
+        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order")
         if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in self.at.ranges.known]:
             yield self.frozen(hanging)
 
@@ -304,5 +307,7 @@ def _drifting(course: Course) -> Mode:
 
 
 DRIFTS = tuple(_drifting(course) for course in COURSES)
+#: Errors of an instrument that are met as a rule.
+CONSTANT = ("offset", "gain")
 HALVES = "the halves of a test in reversed order"
 MOUNTINGS = "the same point in two mountings or with two fillings"

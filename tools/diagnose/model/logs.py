@@ -195,7 +195,7 @@ class _Pass:
         P = np.tile(P, (n, 1, 1))
         w = np.concatenate([x, np.tile(self.plant.flat.starts("algebraic"), (n, 1))], axis=1)
         S = np.zeros((n, self.nx, self.k))
-        likelihood, g, H = np.zeros(n), np.zeros((n, self.k)), np.zeros((n, self.k, self.k))
+        self.likelihood, self.g, self.H = np.zeros(n), np.zeros((n, self.k)), np.zeros((n, self.k, self.k))
         error, variance, shown = (np.full((n, length, reads), np.nan) for _ in range(3))
         for t in range(int(self.lengths.max(initial=0))):
             m = int((self.lengths > t).sum())
@@ -217,11 +217,11 @@ class _Pass:
             w[:m] = step.w
             w[:m, : self.nx] += (gain @ e[:, :, None])[:, :, 0]
             error[:m, t], variance[:m, t] = e, np.einsum("nii->ni", V)
-            self._count(t, e, V, by_z, likelihood, g, H)
+            self._count(t, e, V, by_z)
             if progress is not None and t % 50 == 0:
                 progress(float(np.minimum(self.lengths, t).sum() / self.lengths.sum()))
         error[~self.data.counts | ~np.isfinite(self.data.read).any(axis=2)] = np.nan
-        return likelihood, g, H, error, variance, shown
+        return self.likelihood, self.g, self.H, error, variance, shown
 
     def _left(self, y: np.ndarray, t: int) -> tuple[np.ndarray, np.ndarray]:
         """Errors (m, reads) and variances of the readings."""
@@ -246,16 +246,7 @@ class _Pass:
         after = A @ P @ A.transpose(0, 2, 1) + self.Q - gain @ cross.transpose(0, 2, 1)
         return V, gain, (after + after.transpose(0, 2, 1)) / 2
 
-    def _count(
-        self,
-        t: int,
-        e: np.ndarray,
-        V: np.ndarray,
-        by_z: np.ndarray,
-        likelihood: np.ndarray,
-        g: np.ndarray,
-        H: np.ndarray,
-    ) -> None:
+    def _count(self, t: int, e: np.ndarray, V: np.ndarray, by_z: np.ndarray) -> None:
         """Add the samples that count: a multivariate t, as least squares that are weighted anew at every pass."""
         m, reads = e.shape
         counts = self.data.counts[:m, t]
@@ -263,10 +254,12 @@ class _Pass:
         z = (inverse @ e[:, :, None])[:, :, 0]
         distance = (z * e).sum(axis=1)
         weight = (TAILS + reads) / (TAILS + distance) * counts
-        likelihood[:m] -= counts * (0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS))
+        self.likelihood[:m] -= counts * (
+            0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS)
+        )
         if self.slopes:
-            g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
-            H[:m] += weight[:, None, None] * (by_z.transpose(0, 2, 1) @ inverse @ by_z)
+            self.g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
+            self.H[:m] += weight[:, None, None] * (by_z.transpose(0, 2, 1) @ inverse @ by_z)
 
 
 class _Step:

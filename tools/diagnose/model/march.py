@@ -77,8 +77,6 @@ def march(
     x0: np.ndarray,
     p: np.ndarray,
     pace: np.ndarray,
-    *,
-    turned: bool = False,
     wanted: Collection[int] | None = None,
 ) -> Marched:
     """Run all phases.
@@ -90,22 +88,21 @@ def march(
         p: parameters of each row at each setting (S, N, H, np): the first is run; the derivatives are taken along its
             path at each, which is the truth where the settings differ in what has no effect
         pace: share of each row's dwell that took place (N, H); a stop before it, which is not read, keeps its length
-        turned: whether derivatives are computed
-        wanted: the knobs by which, all without; those by others hold what their readings alone say
+        wanted: the knobs by which derivatives are computed, none of any kind where it is None; those by other knobs
+            hold what their readings alone say
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
     reads = sum(map(len, phases.read))
     found = {"y": np.empty((n, reads, len(plant.shown)))}
-    if turned:
+    if wanted is not None:
         found["by"] = np.zeros((n, height, len(plant.knobs) + 1, reads, len(plant.shown)))
         found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
         found["tried"] = np.zeros((n, len(p) - 1, height, len(plant.tried), reads, len(plant.shown)))
     result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
-    chosen = range(len(plant.knobs)) if wanted is None else wanted
-    duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(chosen)))
+    duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(wanted or ())))
     places, run = [ctypes.byref(r) for r in (plant.record, duty, result)], library().march
     share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
-    return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if turned else None)
+    return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if wanted is not None else None)
 
 
 def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wanted: np.ndarray) -> Any:

@@ -245,13 +245,13 @@ class _Look:
         self.settings.append((alone, changed))
         return len(self.settings)
 
-    def _run(self, turned: bool, wanted: Collection[int] = ()) -> Marched:
+    def _run(self, wanted: Collection[int] | None = None) -> Marched:
         """Readings of all rows. Logged series use their own time stamps; a shortened dwell does not apply to them."""
-        found = self._paced(self.pace, turned, wanted)
+        found = self._paced(self.pace, wanted)
         if not (along := self.o.along).any():
             return found
         if (self.pace != 1).any():
-            logged = self._paced(np.ones(self.n), turned, wanted)
+            logged = self._paced(np.ones(self.n), wanted)
             found.y[:, along] = logged.y[:, along]
             if found.slopes is not None and logged.slopes is not None:
                 found.slopes.by[:, :, :, along] = logged.slopes.by[:, :, :, along]
@@ -261,7 +261,7 @@ class _Look:
             found.slopes.by[:, :, -1, along] = 0.0
         return found
 
-    def _paced(self, pace: np.ndarray, turned: bool, wanted: Collection[int]) -> Marched:
+    def _paced(self, pace: np.ndarray, wanted: Collection[int] | None) -> Marched:
         o, plant = self.o, self.o.plant
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
@@ -273,11 +273,11 @@ class _Look:
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
-        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], turned=turned, wanted=wanted)
+        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], wanted)
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows at each place (p, shown)."""
-        return np.asarray(self._run(turned=False).y[self.o.test, self.o.reads])
+        return np.asarray(self._run().y[self.o.test, self.o.reads])
 
     def instruments(
         self, formula: Formula, t: np.ndarray, true: Mapping[str, np.ndarray]
@@ -350,7 +350,7 @@ class _Look:
     def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
         o, entries = self.o, sorted(self._entries(), key=lambda e: e[0])
-        found = self._run(turned=True, wanted={k for _, k, _ in entries})
+        found = self._run({k for _, k, _ in entries})
         assert found.slopes is not None
         test = o.test
         local = found.slopes.local[test, :, :, o.reads]

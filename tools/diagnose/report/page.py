@@ -121,7 +121,8 @@ def picture(findings: Findings, found: Picture) -> str:
     figure, panels = empty(10.0, 3.4, 1, 2, sharex=True, sharey=True)
     sides = (("without this cause", found.before, BEFORE), ("with this cause", found.after, AFTER))
     for panel, (title, values, colour) in zip(panels, sides, strict=True):
-        _residuals(panel, x, _numbers(values), direction, colour, sd)
+        _band(panel, sd)
+        _residuals(panel, x, _numbers(values), direction, colour)
         panel.set_title(title)
         _along(panel, quantity)
     panels[0].set_ylabel(_ordinate(findings, found.channel))
@@ -142,9 +143,10 @@ def overview(findings: Findings) -> str:
     for i, (name, values) in enumerate(rows.channels.items()):
         line = panels[i * len(axes) : (i + 1) * len(axes)]
         for panel, axis in zip(line, axes, strict=True):
+            _band(panel, values.sd)
             for model, colour, word in sides(values):
                 left = _numbers(values.measured) - _numbers(model)
-                _residuals(panel, _numbers(axis.values), left, direction, colour, values.sd, word)
+                _residuals(panel, _numbers(axis.values), left, direction, colour, word)
             _along(panel, axis)
             panel.label_outer()
         line[0].set_ylabel(_ordinate(findings, name))
@@ -166,7 +168,7 @@ def views(found: Sequence[View]) -> str:
     figure, panels = empty(10.0, 2.2 * len(drawn) + 0.4, len(drawn), 1, sharex=True)
     for panel, view in zip(panels, drawn, strict=True):
         direction = _numbers(view.direction) if view.direction else np.zeros(len(view.deviation))
-        _residuals(panel, _numbers(view.order), _numbers(view.deviation), direction, COLOURS[0], None)
+        _residuals(panel, _numbers(view.order), _numbers(view.deviation), direction, COLOURS[0])
         panel.set_ylabel(f"{view.channel} [{phrases.SHOWN.get(view.unit, view.unit)}]")
         panel.set_title(view.asks)
     panels[-1].set_xlabel("running order")
@@ -175,12 +177,14 @@ def views(found: Sequence[View]) -> str:
     return svg(figure)
 
 
-def _residuals(
-    panel: Axes, x: np.ndarray, y: np.ndarray, direction: np.ndarray, colour: str, sd: float | None, word: str = ""
-) -> None:
-    """Points by direction, a line through the means of groups, and a band of two standard deviations."""
+def _band(panel: Axes, sd: float | None) -> None:
+    """Two standard deviations to either side."""
     if sd is not None:
         panel.axhspan(-2 * sd, 2 * sd, color="#eeeeee", zorder=0)
+
+
+def _residuals(panel: Axes, x: np.ndarray, y: np.ndarray, direction: np.ndarray, colour: str, word: str = "") -> None:
+    """Points by direction, and a line through the means of groups."""
     panel.axhline(0, color="#888888", linewidth=1)
     thin = slice(None, None, -(-len(x) // DRAWN))
     for way, mark in MARKS.items():

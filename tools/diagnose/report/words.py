@@ -112,7 +112,7 @@ def _claim(findings: Findings) -> str:
         )
     n = len(first.causes)
     subject = f"{COUNTS.get(n, n)} causes together explain" if n > 1 else "One cause explains"
-    return f"{subject} the data: {_probable(first)}.{beside.format('it')}"
+    return f"{subject} the data: {_probable(first)}.{beside.format('it')}{_left_open(findings, first)}"
 
 
 def _together(findings: Findings) -> str:
@@ -135,6 +135,18 @@ def _together(findings: Findings) -> str:
             f" {'Besides' if shared else 'Several causes act together, and none is in all likely answers'}: {others}."
         )
     return text.strip()
+
+
+def _left_open(findings: Findings, first: Answer) -> str:
+    """Causes that may act beside those of an answer."""
+    open_: dict[str, float] = {}
+    for h in findings.hypotheses:
+        if all(set(h.causes) & set(group) for group in first.causes):
+            for cause in set(h.causes) - {c for group in first.causes for c in group}:
+                open_[cause] = open_.get(cause, 0.0) + h.probability
+    listed = sorted((c for c, p in open_.items() if p >= LISTED), key=lambda c: (-open_[c], c))
+    told = ", ".join(f"{name_of(c)} ({phrases.percent(open_[c])})" for c in listed)
+    return f" Whether others act as well is left open: {told}." if told else ""
 
 
 def _probable(answer: Answer) -> str:
@@ -242,7 +254,8 @@ def _cannot_be(findings: Findings) -> str:
         first, *alike = group.causes
         others = [c for c in alike if c in still_open]
         if first in named and others and group.distance < APART:
-            said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
+            by_size = " but by how usual the sizes are" if findings.verdict == "explained" else ""
+            said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}{by_size}.")
     if findings.invisible:
         blind = names_of((i.cause for i in findings.invisible), "or", FEW)
         said.append(f"These data cannot show {blind}.")
