@@ -50,7 +50,6 @@ def test_what_is_far_from_the_rig_file_is_told(rig, gearheat):
     answer = gearheat("steady", rig(1), "--set", "input.w=14800 rpm")
     assert answer.code == 0
     assert "input.w = 14800 rpm is 10.2 times that of the rig file, 1450 rpm. Check its digits" in answer.err
-    )
 
 
 def test_a_load_holds_against_either_rotation_over_time(rig, gearheat, tmp_path):
