@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any
 
 from ..model.core.component import Component
-from ..model.core.declare import Declaration
+from ..model.core.flat import Quantity
 from ..model.errors import ScenarioError, suggestion
 from ..model.machines.spec import Spec
 
@@ -64,16 +64,14 @@ def look_up(where: str, path: str, unit: str, types: Mapping[str, type[Component
     return part.number_at(sizes[key], part.values) if key in sizes else float(part.values[key])
 
 
-def followed(
-    spec: Spec, references: Mapping[str, str], changed: Iterable[str], known: Mapping[str, Declaration]
-) -> Spec:
+def followed(spec: Spec, references: Mapping[str, str], changed: Iterable[str], known: Mapping[str, Quantity]) -> Spec:
     """The spec with the values that follow from those that have changed.
 
     Args:
         spec: the machine
         references: path -> what it refers to
         changed: paths of values
-        known: path -> its declaration
+        known: path -> its quantity
     """
     parts = {path.rpartition(".")[0] for path in changed}
     types = {part.name: spec.types[part.type] for part in spec.parts}

@@ -56,14 +56,15 @@ class RadialSeal(Friction):
 
     def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterator[str]:
         """A seat that is not of the size of the bearings' bores."""
-        bores = {part.name: part.values["d"] for part in met["shaft"] if part.role == "bearing" and "d" in part.values}
-        for name, d in bores.items():
-            if not SEAT[0] * d <= self.values["d_sh"] <= SEAT[1] * d:
-                yield (
-                    f"{self.name} is on a shaft of d_sh = {1000 * self.values['d_sh']:.4g} mm, and {name} on the same"
-                    f" one has a bore of {1000 * d:.4g} mm. Give {self.name} its own d_sh, or {name} its own bearing."
-                )
-                return
+        held = [part for part in met["shaft"] if part.role == "bearing" and "d" in part.values]
+        bores = {part.name: part.values["d"] for part in held}
+        d_sh = self.values["d_sh"]
+        if bores and not SEAT[0] * min(bores.values()) <= d_sh <= SEAT[1] * max(bores.values()):
+            name = max(bores, key=lambda bearing: bores[bearing])
+            yield (
+                f"{self.name} is on a shaft of d_sh = {1000 * d_sh:.4g} mm, and {name} on the same one has a bore of"
+                f" {1000 * bores[name]:.4g} mm. Give {self.name} its own d_sh, or {name} its own bearing."
+            )
 
 
 class LipSeal(RadialSeal):
