@@ -70,6 +70,7 @@ def test_a_gain_is_a_share_of_the_magnitude_in_both_directions(planetary):
     cause = planetary.cause("sensor.torque.gain")
     wrong = shown(planetary, cause, form_of(cause, "T_sun"), 0.01)["T_sun"]
     assert wrong == pytest.approx(np.full(6, 0.01 * planetary.ranges.mid["T_sun"]))
+    assert cause.size.high > 0.12, "a wrong sensitivity or lever is no rare error"
 
 
 def test_from_one_test_on_and_in_one_direction_only(planetary):
