@@ -44,7 +44,7 @@ from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import find_map, names_map
 from .own_types import load_installed_types, load_type
 from .repeats import expand
-from .scenario import Instrument, Protocol, Scenario
+from .scenario import DRIVES, Instrument, Protocol, Scenario, check_drives
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import (
@@ -95,11 +95,13 @@ def _find(name_or_path: str | Path) -> Path:
             return shipped
         if path.is_dir() and (path / "rig.toml").is_file():
             return path / "rig.toml"
-        if path.is_file() or path.suffix == ".toml":
+        if path.is_file():
             return path
     names = list_rigs()
     beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
-    close = suggestion(str(name_or_path), [*names, *beside])
+    close = suggestion(str(name_or_path), [*names, *beside]) or suggestion(f"{name_or_path}.toml", beside)
+    if path.suffix == ".toml" and not close:
+        return path
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
 
 
@@ -169,7 +171,7 @@ class _Loader:
         """All of the file, or all of its problems."""
         parts = self._parts()
         point = self._operating_point()
-        given = self._drive()
+        given, drives = self._drive()
         spec = self._spec(parts)
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
@@ -180,8 +182,9 @@ class _Loader:
             doc=self.table.doc,
             kind=self.table.kind,
             path=self.path,
-            spec=spec.with_values(point).driven(given),
+            spec=spec.with_values(point).driven(given, drives),
             given=given,
+            drives=drives,
             operating_point=point,
             instruments=sensors,
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
@@ -212,10 +215,11 @@ class _Loader:
 
     def _operating_point(self) -> dict[str, float]:
         where = f"{self.file} [operating_point]"
-        sources, problems = sources_of(where, self.table.operating_point)
+        told = {key: value for key, value in self.table.operating_point.items() if key != DRIVES}
+        sources, problems = sources_of(where, told)
         self.problems += problems
         self.value_sources |= sources
-        written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
+        written = dict(paths({k: v for k, v in told.items() if k not in ABOUT}))
         point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
@@ -238,13 +242,17 @@ class _Loader:
                 found[path] = read(f"{where}: ", raw, self.settable[path])
         return found
 
-    def _drive(self) -> dict[str, tuple[str, ...]]:
+    def _drive(self) -> tuple[dict[str, tuple[str, ...]], str]:
+        """What is given at the shaft ends, and the end where power enters, "" if none is named."""
         ends = [name for name, cls in self.types.items() if cls.__name__ == "ShaftEnd"]
         for end in self.table.drive:
             if end not in ends:
                 close = suggestion(end, ends) or f" Shaft ends: {', '.join(ends) or 'none'}."
                 self.problems.append(f'{self.file} [drive]: "{end}" is no shaft end.{close}')
-        return {end: tuple(quantities) for end, quantities in self.table.drive.items()}
+        drives = self.table.operating_point.get(DRIVES, "")
+        with self.problems:
+            check_drives(f"{self.file} [operating_point]: {DRIVES}", drives, ends)
+        return {end: tuple(quantities) for end, quantities in self.table.drive.items()}, drives
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
         ports = [f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import hypot
 from pathlib import Path
@@ -16,6 +16,9 @@ from .entries import Entry, catalogue, unchecked_entry
 from .shipped import FILES
 from .tables import DrivenTable, ErratumTable
 from .values import entry_values, in_range, quantities, readable, settable
+
+#: Key of the shaft end where power enters.
+DRIVES = "drives"
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class Scenario:
     Args:
         given: shaft end -> which of w and tau are given there
         operating_point: path of an input -> value in SI
+        drives: the shaft end where power enters as the machine is meant, "" where the file names none
         instruments: what measured tables of the rig read
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
@@ -92,6 +96,7 @@ class Scenario:
     spec: Spec
     given: Mapping[str, tuple[str, ...]]
     operating_point: Mapping[str, float]
+    drives: str = ""
     instruments: tuple[Instrument, ...] = ()
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
@@ -165,12 +170,17 @@ class Scenario:
     def driven(self, given: Mapping[str, Iterable[str]]) -> Scenario:
         """The scenario with other quantities given at its shaft ends."""
         fixed = {end: tuple(quantities) for end, quantities in given.items()}
-        return replace(self, spec=self.spec.driven(fixed), given=fixed)
+        return replace(self, spec=self.spec.driven(fixed, self.drives), given=fixed)
 
     def driven_by(self, names: Iterable[str]) -> Scenario:
         """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
         shafts = self.shaft_paths()
         return self.driven(deduce_drive(self.given, [name for name in names if name in shafts]))
+
+    def driven_by_torques(self) -> Scenario:
+        """The scenario with signed torques given where its loads are."""
+        signed = {"load": "tau"}
+        return self.driven({end: [signed.get(key, key) for key in keys] for end, keys in self.given.items()})
 
     def shaft_paths(self) -> set[str]:
         """Paths of the quantities that may be given at the shaft ends."""
@@ -255,21 +265,37 @@ class Scenario:
 def deduce_drive(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
 
-    As many quantities as before are given: with two torques named, the speed follows.
+    Torque and load are one kind. As many quantities as before are given: with two torques named, the speed follows.
 
     Args:
         given: shaft end -> quantities given there so far
         names: paths of the shaft quantities to be given
     """
     named = [tuple(name.rsplit(".", 1)) for name in names]
-    kinds = {quantity for _, quantity in named}
+    kinds = {quantity == "w" for _, quantity in named}
     before = [(end, quantity) for end, quantities in given.items() for quantity in quantities]
-    spare = [(end, quantity) for end, quantity in before if quantity not in kinds]
+    spare = [(end, quantity) for end, quantity in before if (quantity == "w") not in kinds]
     kept = spare[: max(0, len(before) - len(named))]
     drive: dict[str, tuple[str, ...]] = {}
     for end, quantity in (*kept, *named):
         drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))
     return drive
+
+
+def check_drives(where: str, end: object, ends: Sequence[str]) -> None:
+    """Refuse what is no shaft end where power may enter; "" stands for none.
+
+    Args:
+        where: place of the name, for messages
+        end: its name
+        ends: those there are
+
+    Raises:
+        ScenarioError: there is no such end
+    """
+    if end and end not in ends:
+        close = suggestion(str(end), ends) or f" Shaft ends: {', '.join(ends) or 'none'}."
+        raise ScenarioError(f'{where} = "{end}" is no shaft end.{close}')
 
 
 def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:
