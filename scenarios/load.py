@@ -17,8 +17,9 @@
     sources = { V = "assumed: one litre" }
 
 Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
-A part's values are those of its type; one of your own is "my_module:MyClass", see `use_parts`. A name "x_{a,b}" stands
-for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
+A part's values are those of its type; a type of your own is "my_module:MyClass", see `use_parts`. A value may be that
+of another part, r = "stage_1.r_2", see `references`. A name "x_{a,b}" stands for two parts, see `repeats`; what
+use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
 
@@ -42,7 +43,9 @@ from .assemblies import expand_assemblies
 from .csv_table import scale, split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import find_map, names_map
+from .housing import oil_problems
 from .own_types import load_installed_types, load_type
+from .references import in_order, look_up, refers
 from .repeats import expand
 from .scenario import DRIVES, Instrument, Protocol, Scenario, check_drives
 from .shipped import RIGS, list_rigs
@@ -131,6 +134,7 @@ class _Loader:
         self.settable = quantities(self.types, settable)
         self.value_sources: dict[str, str] = {}
         self.parts: dict[str, PartValues] = {}
+        self.references: dict[str, str] = {}
 
     def _types(self) -> dict[str, type[Component]]:
         """Part -> its class, for the parts whose type is known."""
@@ -176,6 +180,7 @@ class _Loader:
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
         self.problems.check()
+        Problems(f"{self.file}: {problem}" for problem in oil_problems(spec)).check()
         nets(assemble(spec))  # ports of different kinds that meet
         return Scenario(
             name=self.name,
@@ -192,6 +197,7 @@ class _Loader:
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
+            references=self.references,
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(self.table.errata),
             protocol=protocol,
@@ -201,17 +207,41 @@ class _Loader:
 
     def _parts(self) -> dict[str, PartValues]:
         parts = self.parts
-        for name, cls in self.types.items():
+        referring = {name: self._references(name) for name in self.types}
+        order, circle = in_order(referring)
+        if circle:
+            self.problems.append(f"{self.file}: values of {', '.join(circle)} refer to each other. Write a number.")
+            parts |= {name: PartValues() for name in circle}
+        for name, cls in ((name, self.types[name]) for name in order):
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
             try:
                 table |= {key: find_map(raw, self.path.parent) for key, raw in table.items() if names_map(raw)}
             except GearheatError as error:
                 self.problems += [f"{self.file} [part.{name}]: {problem}" for problem in error.problems]
                 table = {k: v for k, v in table.items() if not names_map(v)}
-            parts[name] = part_values(f"{self.file} [part.{name}]", name, cls, table)
+            whole = self._refer(name, table, referring[name])
+            parts[name] = PartValues() if whole is None else part_values(f"{self.file} [part.{name}]", name, cls, whole)
             self.problems += parts[name].problems
             self.value_sources |= {f"{name}.{key}": source for key, source in parts[name].sources.items()}
         return parts
+
+    def _references(self, name: str) -> dict[str, str]:
+        """Values of a part that stand for those of other parts: key -> path."""
+        table, known = self.table.part.get(name, {}), settable(self.types[name])
+        return {key: raw for key, raw in table.items() if key in known and refers(raw, self.types)}
+
+    def _refer(self, name: str, table: Mapping[str, Any], references: Mapping[str, str]) -> dict[str, Any] | None:
+        """The table of a part with numbers in the place of references, None where one names what is wrong itself."""
+        found, declared = dict(table), settable(self.types[name])
+        for key, ref in references.items():
+            source, unit = self.parts.get(ref.partition(".")[0]), declared[key].unit
+            if source is None or source.problems or not source.values:
+                return None
+            with self.problems:
+                value = look_up(f"{self.file} [part.{name}]: {key}", ref, unit, self.types, source.values)
+                found[key] = value if unit == "1" else f"{value!r} {unit}"
+        self.references |= {f"{name}.{key}": ref for key, ref in references.items()}
+        return None if any(found[key] == table[key] for key in references) else found
 
     def _operating_point(self) -> dict[str, float]:
         where = f"{self.file} [operating_point]"

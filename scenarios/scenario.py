@@ -13,6 +13,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
+from .references import followed
 from .shipped import FILES
 from .tables import DrivenTable, ErratumTable
 from .values import entry_values, in_range, quantities, readable, settable
@@ -83,6 +84,7 @@ class Scenario:
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         joint_uncertainties: reason -> path -> what its value changes by at one standard deviation of the reason, SI
         units: path -> unit in which its value is written
+        references: path of a value -> path of that of another part, which it follows
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig are taken
         data: the measured table that it comes with
@@ -103,6 +105,7 @@ class Scenario:
     uncertainties: Mapping[str, float] = field(default_factory=dict)
     joint_uncertainties: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    references: Mapping[str, str] = field(default_factory=dict)
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[ErratumTable, ...] = ()
     protocol: Protocol | None = None
@@ -155,9 +158,12 @@ class Scenario:
             ScenarioError: parts that do not exist
         """
         moved = {path: values[path] for path in self.inputs() if path in values}
+        references = {path: ref for path, ref in self.references.items() if path not in values}
+        spec = self.spec.with_values(values)
         return replace(
             self,
-            spec=self.spec.with_values(values),
+            spec=followed(spec, references, values, self.settable()) if references else spec,
+            references=references,
             operating_point={**self.operating_point, **moved},
             value_sources={**self.value_sources, **dict.fromkeys(values, source)},
             uncertainties={path: value for path, value in self.uncertainties.items() if path not in values},

@@ -168,6 +168,10 @@ class Component:
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
             yield relation.problem(value, given) + self.way_out(relation.name)
 
+    def sizes(self) -> Mapping[str, Any]:
+        """Lengths that other parts may have from it, by key, as expressions of its parameters [m]."""
+        return {}
+
     def way_out(self, relation: str) -> str:
         """A value with which a relation that does not hold would, as a sentence behind its remedy; "" for none.
 

@@ -46,6 +46,12 @@ def test_power_flows_as_the_rig_means_it_with_a_load_and_with_the_right_sign(rig
     assert driven["output.tau"] == pytest.approx(-torque)
 
 
+def test_what_is_far_from_the_rig_file_is_told(rig, gearheat):
+    answer = gearheat("steady", rig(1), "--set", "input.w=14800 rpm")
+    assert answer.code == 0
+    assert "input.w = 14800 rpm is 10.2 times that of the rig file, 1450 rpm. Check its digits" in answer.err
+
+
 def test_a_load_holds_against_either_rotation_over_time(rig, gearheat, tmp_path):
     duty, out = tmp_path / "duty.csv", tmp_path / "run.csv"
     rows = ["time [min],input.w [rpm],output.load [N.m]", "0,1450,30", "10,1450,30", "20,-1450,30", "30,-1450,30"]

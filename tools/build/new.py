@@ -26,7 +26,7 @@ from . import sizing
 from .bearings import LIGHT
 from .plausible import WARM, notes, usual
 from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit, wanted_of
-from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, WormStage
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Density of steel [kg/m3].
 STEEL = 7850.0
@@ -218,6 +218,7 @@ def text(
         boxed: whether the housing is that of a data sheet
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
+    worm = isinstance(made.stages[0], WormStage)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
     values = {
         "doc": doc,
@@ -225,9 +226,8 @@ def text(
         "efficiency": efficiency,
         "load": made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
-        "of_oil": catalogue("oil")[oil].values,
         "bath": sizing.bath(made),
-        "splash": sizing.splash(made),
+        "splash": sizing.splash(made) | {"r": "stage_1.r_1" if worm else _reach(made.stages[0], 0)},
         "below": sizing.BELOW,
         "reached": 100 * sizing.REACHED,
         "side": SIDE,
@@ -287,13 +287,18 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     return (
         found
         | shape
-        | {"r": s.reach, "m": s.m_n, "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
+        | {"r": _reach(s, k), "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
     )
+
+
+def _reach(s: Stage, k: int) -> str:
+    """Radius of what moves the oil: that of the wheel, or how far planets reach."""
+    return f"{_mm(s.reach)} mm" if isinstance(s, PlanetaryStage) else f"stage_{k + 1}.r_2"
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s = made.shafts[k]
-    radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
+    radii = [f"stage_{k}.r_2"] * (k > 0) + [f"stage_{k + 1}.r_1"] * (k < len(made.stages))
     places = [
         {
             "name": f"{names[k]}_bearing_{end}",

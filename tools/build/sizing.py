@@ -311,13 +311,10 @@ def compute_wetted_area(stage: Stage) -> float:
 
 def splash(made: Unit) -> dict[str, float]:
     """What a unit's walls have from the gear that throws most: the first that dips, and the shaft it is on."""
-    first, worm = made.stages[0], isinstance(made.stages[0], WormStage)
     return {
         "A": REACHED * made.area,
-        "r": first.r_1 if worm else first.reach,
-        "shaft": 0 if worm else 1,
+        "shaft": 0 if isinstance(made.stages[0], WormStage) else 1,
         "share": ALONG,
-        "L": made.height,
     }
 
 

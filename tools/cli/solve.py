@@ -209,6 +209,8 @@ def _print_point(
     console.say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     if found.get("backward"):
         console.note(BACKWARD)
+    for line in found.get("far", ()):
+        console.note(f"{line}. Check its digits and its unit.")
     print_outside(found["outside"])
     print_unchecked(found["unchecked"])
 

@@ -15,6 +15,7 @@ from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import find_map, names_map
 from ...scenarios.given import Settings, assignments_of
+from ...scenarios.housing import oil_problems
 from ...scenarios.scenario import DRIVES, Scenario, check_drives, deduce_drive, parse_assignments
 from ...scenarios.write import SET
 
@@ -63,6 +64,7 @@ def adjust(
     set_up = scenario.with_values(values, SET).driven(driven)
     sources = {**set_up.value_sources, **_list_filled_sources(scenario, assignments)}
     set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    Problems(oil_problems(set_up.spec)).check()
     return set_up.with_values(_derive_values(set_up.spec, named), SET)
 
 

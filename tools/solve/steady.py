@@ -26,6 +26,8 @@ from .settings import adjust, find_unchecked, flat_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+#: Speed or torque over that of the rig file from which on it may be a slip [1].
+FAR = 5.0
 #: Temperature of the oil up to which gear units are rated thermally [K].
 RATED = 273.15 + 95.0
 #: What it is.
@@ -42,12 +44,14 @@ class SteadyState(Quantities):
         result: states, inputs and outputs in SI, with the power balance and the laws used
         backward: whether power leaves at the end that drives, or flows the other way than at the operating point where
             the rig file names no such end
+        far: speeds and torques that are far above those of the rig file, in words
     """
 
     scenario: Scenario
     flat: FlatModel
     result: Result
     backward: bool
+    far: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> float:
         """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
@@ -113,6 +117,7 @@ class SteadyState(Quantities):
             "plot": None,
             "power_W": self.power(),
             "backward": self.backward,
+            "far": list(self.far),
             "losses_W": self.losses_by_kind(),
             **point_of(self.flat, self.result),
             "unchecked": find_unchecked(self.scenario, self.flat),
@@ -174,7 +179,14 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     backward = len(given) == 2 and bool(signs[0] * signs[1] < 0)
     if scenario.drives:
         backward = float(found[f"{scenario.drives}.P"][0]) < 0
-    return SteadyState(scenario, flat, found, backward)
+    units = {"w": "rad/s", "tau": "N.m", "load": "N.m"}
+    both = [(path, usual.operating_point.get(path, 0.0), scenario.operating_point.get(path, 0.0)) for path in given]
+    far = [
+        f"{path} = {text(now, unit)} is {now / before:.3g} times that of the rig file, {text(before, unit)}"
+        for path, before, now in both
+        if before and abs(now / before) > FAR and (unit := units[path.rpartition(".")[2]])
+    ]
+    return SteadyState(scenario, flat, found, backward, tuple(far))
 
 
 def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list[str]:
