@@ -35,7 +35,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion, visible
-from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
+from ..model.machines.spec import LAYOUTS, PartSpec, Spec, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from .assemblies import expand_assemblies
@@ -174,13 +174,14 @@ class _Loader:
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
         self.problems.check()
-        nets(assemble(spec))  # ports of different kinds that meet
+        spec = spec.with_values(point).driven(given)
+        nets(spec.assembly())  # ports of different kinds that meet
         return Scenario(
             name=self.name,
             doc=self.table.doc,
             kind=self.table.kind,
             path=self.path,
-            spec=spec.with_values(point).driven(given),
+            spec=spec,
             given=given,
             operating_point=point,
             instruments=sensors,
@@ -247,7 +248,8 @@ class _Loader:
         return {end: tuple(quantities) for end, quantities in self.table.drive.items()}
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
-        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port)]
+        named = (f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port))
+        ports = dict.fromkeys(named)
         for net, members in self.table.connect.items():
             where = f"{self.file} [connect] {net}"
             self.problems += [
