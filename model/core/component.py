@@ -113,7 +113,7 @@ class Component:
         self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
         self.states: dict[str, State] = {k: d for k, d in list_declared(cls, State).items() if self.has(k)}
         self.variables: dict[str, Variable] = list_declared(cls, Variable)
-        self.inputs: dict[str, Input] = list_declared(cls, Input)
+        self.inputs: dict[str, Input] = {k: d for k, d in list_declared(cls, Input).items() if self.has(k)}
         names = (*parameters, *self.states, *self.variables, *self.inputs)
         self.symbols = {k: ca.SX.sym(f"{name}.{k}") for k in names}
         self.derivatives = {k: ca.SX.sym(f"der({name}.{k})") for k in self.states}
@@ -126,7 +126,11 @@ class Component:
 
     def _problems(self, values: dict[str, Any]) -> list[str]:
         cls = type(self)
-        settable: dict[str, Declaration] = {**list_declared(cls, Parameter), **list_declared(cls, State), **self.inputs}
+        settable: dict[str, Declaration] = {
+            **list_declared(cls, Parameter),
+            **list_declared(cls, State),
+            **list_declared(cls, Input),
+        }
         where = f"{type(self).__name__} {self.name}"
         found = []
         for key in values.keys() - settable.keys():
@@ -190,7 +194,19 @@ class Component:
         for relation, value in find_broken([r for r, _ in known], [v for _, v in known]):
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
-            yield relation.problem(value, given)
+            yield relation.problem(value, given) + self.way_out(relation.name)
+
+    def sizes(self) -> Mapping[str, Any]:
+        """Lengths that other parts may have from it, by key, as expressions of its parameters [m]."""
+        return {}
+
+    def way_out(self, relation: str) -> str:
+        """A value with which a relation that does not hold would, as a sentence behind its remedy; "" for none.
+
+        Args:
+            relation: its name
+        """
+        return ""
 
     def number_at(self, expression: Any, values: Mapping[str, float]) -> float:
         """Value of an expression of the parameters.
@@ -259,7 +275,7 @@ class Component:
         return ()
 
     def has(self, name: str) -> bool:
-        """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
+        """Whether a port, state, input or parameter exists under the component's choices and what it is `told`."""
         return True
 
     def der(self, state: str) -> Any:

@@ -112,10 +112,14 @@ class Spec:
             types={**self.types, **(types or {})},
         )
 
-    def driven(self, given: Mapping[str, Iterable[str]]) -> Spec:
-        """The spec with the quantities ("w", "tau") that are given at each shaft end; none at those not named.
+    def driven(self, given: Mapping[str, Iterable[str]], drives: str = "") -> Spec:
+        """The spec driven at its shaft ends.
 
         A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+
+        Args:
+            given: shaft end -> "w", "tau" and "load" that are given there; nothing at those not named
+            drives: the end where power enters, if a load is given there, too; it leaves at all others
 
         Raises:
             ScenarioError: names that are no shaft end
@@ -126,6 +130,7 @@ class Spec:
             raise ScenarioError(
                 [f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown]
             )
+        choices |= {f"{end}.drives": end == drives for end in self.of_type("ShaftEnd")}
         dynamic = not any("w" in quantities for quantities in given.values())
         return self.with_values(choices | {f"{name}.dynamic": dynamic for name in self.of_type("Inertia")})
 

@@ -25,7 +25,7 @@ from .card import Card
 from .checks import COLDEST, HOTTEST
 from .log_checks import check_log
 from .read import place_sensor
-from .sensors import SI, sensors_of
+from .sensors import SI, sensors_of, without_sign
 from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
@@ -132,6 +132,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     time, dated = _time(cells[time_column], time_column, path.name, lines, problems)
     values = {s.name: _values(cells[s.column], s, path.name, lines, problems) for s in sensors}
     raise_all(problems, path.name)
+    sensors, values = without_sign(scenario, sensors, values)
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
     values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)

@@ -202,7 +202,9 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
     through = compiled(flat, schedule) if len(schedule.time) > LONG else None
     result = integrate(flat, schedule, start=first_temperatures(scenario, flat, schedule), through=through)
     before = {"schema": "gearheat.simulate/1", "rig": scenario.name, "out": None, "plot": None}
+    into = result.columns.get(f"{scenario.drives}.P", np.zeros(0))
     behind = {
+        "backward": int((into < 0).sum()),
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
