@@ -286,8 +286,7 @@ class _Loader:
         return {end: tuple(quantities) for end, quantities in self.table.drive.items()}, drives
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
-        named = (f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port))
-        ports = dict.fromkeys(named)
+        ports = {f"{name}.{key}": name for name, cls in self.types.items() for key in list_declared(cls, Port)}
         for net, members in self.table.connect.items():
             where = f"{self.file} [connect] {net}"
             self.problems += [
