@@ -41,7 +41,7 @@ def options(
 PANELS = {
     "Your gearbox": (rigs.new, rigs.list_, rigs.show, rigs.parts, rigs.schema),
     "What it does": (solve.steady, solve.simulate, solve.design, solve.sweep, solve.map_, solve.rating, solve.teeth),
-    "FMU": (fmu.export, fmu.play),
+    "FMU and page": (fmu.export, fmu.play, fmu.page),
     "Measured data": (
         measured.run,
         measured.losses,

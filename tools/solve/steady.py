@@ -62,13 +62,8 @@ class SteadyState(Quantities):
 
     def losses(self) -> dict[str, float]:
         """Loss power of each part that has one [W]; of a part with several kinds their sum."""
-        meters, found = self.scenario.spec.of_type("Efficiency"), dict[str, float]()
-        for name in self.result.columns:
-            part, _, key = name.rpartition(".")
-            whole = f"{part}.P_loss" in self.result.columns
-            if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
-                found[part] = found.get(part, 0.0) + self[name]
-        return found
+        names = loss_names(self.scenario, self.result.columns)
+        return {part: sum(self[name] for name in own) for part, own in names.items()}
 
     def power(self) -> dict[str, float]:
         """Power into the gearbox at each shaft end [W], below zero where it flows out; the largest first."""
@@ -213,6 +208,23 @@ def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list
     names |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
     names |= {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
     return [name for name in values if name in names]
+
+
+def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]:
+    """Part -> the names whose sum is its loss power: its whole loss, or its kinds where there is no whole.
+
+    Args:
+        scenario: the rig
+        names: of all outputs
+    """
+    every, meters = list(names), scenario.spec.of_type("Efficiency")
+    found: dict[str, list[str]] = {}
+    for name in every:
+        part, _, key = name.rpartition(".")
+        whole = f"{part}.P_loss" in every
+        if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
+            found.setdefault(part, []).append(name)
+    return found
 
 
 def leading_outputs(scenario: Scenario) -> list[str]:
