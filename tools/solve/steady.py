@@ -17,6 +17,7 @@ from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
+from ..show.console import note
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from ..show.notes import PLURAL
@@ -26,6 +27,8 @@ from .settings import adjust, find_unchecked, flat_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+#: Parts from which on the way to a steady state is told: some seconds.
+LARGE = 500
 #: Speed or torque over that of the rig file from which on it may be a slip [1].
 FAR = 5.0
 #: Temperature of the oil up to which gear units are rated thermally [K].
@@ -172,7 +175,11 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     """
     usual = scenario_of(rig)
     scenario = adjust(usual, set)
+    if large := len(scenario.spec.parts) > LARGE:
+        note(f"{scenario.name}: equations of {len(scenario.spec.parts)} parts")
     flat = flat_of(scenario)
+    if large:
+        note(f"{scenario.name}: steady state of {len(flat.states)} states")
     found = solve(flat, conditions(scenario, flat))
     given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
     signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
