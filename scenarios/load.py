@@ -36,7 +36,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion, visible
-from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
+from ..model.machines.spec import LAYOUTS, PartSpec, Spec, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from .assemblies import expand_assemblies
@@ -181,13 +181,14 @@ class _Loader:
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
         self.problems.check()
         Problems(f"{self.file}: {problem}" for problem in oil_problems(spec)).check()
-        nets(assemble(spec))  # ports of different kinds that meet
+        spec = spec.with_values(point).driven(given, drives)
+        nets(spec.assembly())  # ports of different kinds that meet
         return Scenario(
             name=self.name,
             doc=self.table.doc,
             kind=self.table.kind,
             path=self.path,
-            spec=spec.with_values(point).driven(given, drives),
+            spec=spec,
             given=given,
             drives=drives,
             operating_point=point,
@@ -285,7 +286,7 @@ class _Loader:
         return {end: tuple(quantities) for end, quantities in self.table.drive.items()}, drives
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
-        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port)]
+        ports = {f"{name}.{key}": name for name, cls in self.types.items() for key in list_declared(cls, Port)}
         for net, members in self.table.connect.items():
             where = f"{self.file} [connect] {net}"
             self.problems += [

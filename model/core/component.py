@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, nextafter
 from typing import Any, ClassVar
 
@@ -25,10 +26,37 @@ class Equation:
     lhs: Any
     rhs: Any
 
-    @property
+    @cached_property
     def residual(self) -> Any:
         """lhs - rhs."""
         return self.lhs - self.rhs
+
+
+@dataclass(frozen=True, eq=False)
+class Balance(Equation):
+    """Terms whose sum is zero, which any one of them follows from.
+
+    Args:
+        terms: symbols (SX, 1 each)
+    """
+
+    terms: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, name: str, terms: Iterable[Any]) -> Balance:
+        """The balance of some terms.
+
+        Args:
+            name: what it says
+            terms: symbols (SX, 1 each)
+        """
+        terms = tuple(terms)
+        return cls(name, sum(terms, ca.SX(0)), ca.SX(0), terms)
+
+    def rest(self, term: Any) -> Any:
+        """What one of the terms (SX, 1), of which each occurs once, is by the others."""
+        own = term.element_hash()
+        return -sum((other for other in self.terms if other.element_hash() != own), ca.SX(0))
 
 
 #: Identifier of a cause -> parameters of a part that carry it, with the exponent of the cause's factor in each.
@@ -48,7 +76,7 @@ def equation(name: str, lhs: Any, rhs: Any) -> Equation:
         lhs: one side: a number or a CasADi expression
         rhs: the other side
     """
-    return Equation(name, ca.SX(lhs), ca.SX(rhs))
+    return Equation(name, *(side if type(side) is ca.SX else ca.SX(side) for side in (lhs, rhs)))
 
 
 class Component:

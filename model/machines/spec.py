@@ -52,8 +52,16 @@ class Spec:
 
     def flat(self) -> FlatModel:
         """The flat model; made once of equal specs. Raises GearheatError where there is none."""
+        return _flat(self._whole)
+
+    def assembly(self) -> Assembly:
+        """The parts, as `assemble` makes them; made once of equal specs."""
+        return _assembly(self._whole)
+
+    @property
+    def _whole(self) -> _Whole:
         classes = tuple(self.types.get(part.type) for part in self.parts)
-        return _flat(_Whole(self, repr((self.name, self.doc, self.parts, self.connections)), classes))
+        return _Whole(self, repr((self.name, self.doc, self.parts, self.connections)), classes)
 
     def part(self, name: str) -> PartSpec:
         """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
@@ -155,5 +163,10 @@ class _Whole:
 
 
 @lru_cache(KEPT)
+def _assembly(whole: _Whole) -> Assembly:
+    return assemble(whole.spec)
+
+
+@lru_cache(KEPT)
 def _flat(whole: _Whole) -> FlatModel:
-    return flatten(assemble(whole.spec))
+    return flatten(_assembly(whole))

@@ -17,6 +17,7 @@ from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
+from ..show.console import note
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from ..show.notes import PLURAL
@@ -26,6 +27,8 @@ from .settings import adjust, find_unchecked, flat_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+#: Parts from which on the way to a steady state is told: some seconds.
+LARGE = 500
 #: Speed or torque over that of the rig file from which on it may be a slip [1].
 FAR = 5.0
 #: Temperature of the oil up to which gear units are rated thermally [K].
@@ -59,13 +62,8 @@ class SteadyState(Quantities):
 
     def losses(self) -> dict[str, float]:
         """Loss power of each part that has one [W]; of a part with several kinds their sum."""
-        meters, found = self.scenario.spec.of_type("Efficiency"), dict[str, float]()
-        for name in self.result.columns:
-            part, _, key = name.rpartition(".")
-            whole = f"{part}.P_loss" in self.result.columns
-            if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
-                found[part] = found.get(part, 0.0) + self[name]
-        return found
+        names = loss_names(self.scenario, self.result.columns)
+        return {part: sum(self[name] for name in own) for part, own in names.items()}
 
     def power(self) -> dict[str, float]:
         """Power into the gearbox at each shaft end [W], below zero where it flows out; the largest first."""
@@ -177,7 +175,11 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     """
     usual = scenario_of(rig)
     scenario = adjust(usual, set)
+    if large := len(scenario.spec.parts) > LARGE:
+        note(f"{scenario.name}: equations of {len(scenario.spec.parts)} parts")
     flat = flat_of(scenario)
+    if large:
+        note(f"{scenario.name}: steady state of {len(flat.states)} states")
     found = solve(flat, conditions(scenario, flat))
     given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
     signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
@@ -206,6 +208,23 @@ def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list
     names |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
     names |= {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
     return [name for name in values if name in names]
+
+
+def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]:
+    """Part -> the names whose sum is its loss power: its whole loss, or its kinds where there is no whole.
+
+    Args:
+        scenario: the rig
+        names: of all outputs
+    """
+    every, meters = list(names), scenario.spec.of_type("Efficiency")
+    found: dict[str, list[str]] = {}
+    for name in every:
+        part, _, key = name.rpartition(".")
+        whole = f"{part}.P_loss" in every
+        if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
+            found.setdefault(part, []).append(name)
+    return found
 
 
 def leading_outputs(scenario: Scenario) -> list[str]:
