@@ -26,7 +26,7 @@ class Instrument:
         name: of the instrument
         column: column of a measured table
         reads: path in the model
-        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power" or "efficiency"
+        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency" or "current"
         role: "given" drives the model, "read" is compared
         unit: of the column
         magnitude: whether the column holds magnitudes
