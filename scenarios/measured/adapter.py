@@ -158,7 +158,7 @@ class Adapter:
         return found
 
     def _header(self, file: IO[str]) -> tuple[Iterator[list[str]], list[str]]:
-        """The rows under the names of the columns, and these: given, in the first line behind comments, or in their last."""
+        """The rows under the names of the columns, and these: given, in the first line or in the last comment."""
         in_comment = self.table.get("names_in") == "comment"
         last, first = "", file.readline()
         while first.startswith("#"):
