@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -49,6 +49,13 @@ FLAGS = (*CODE, *LINK)
 #: The system's C library of Windows. What it lacks is in wrapper/windows.c; the compiler's own would have to be built
 #: first, from 400 files.
 _SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "stdio", "string", "private"))
+
+#: A module of WebAssembly. It imports nothing and exports the drivers and the memory, so that a page needs no glue. Two
+#: rows side by side fill its vectors.
+WEB = Platform("wasm32", ".wasm", ("wasm32-wasi",))
+_WEB_CODE = ("-Os", "-DLANES=2", "-msimd128", "-g0", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off")
+_WEB_LINK = ("-std=c99", "-s", "-mexec-model=reactor", "-Wl,--export-dynamic,--export=malloc,--export=free")
+_WEB = (*_WEB_CODE, *_WEB_LINK)
 
 #: Compilers that run at once, whoever asks.
 _AT_ONCE = threading.BoundedSemaphore(os.cpu_count() or 1)
@@ -125,6 +132,7 @@ def binary(source: str, platform: Platform, *, headers: Mapping[str, str] = Mapp
     key = hashlib.sha256()
     windows = wrapper("windows.c")
     named = (platform.name, *platform.targets, OPTIMISE, *FLAGS, *_SYSTEM, version("ziglang"))
+    named += _WEB if platform == WEB else ()
     for part in (source, *headers.values(), windows, *named):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
@@ -212,13 +220,15 @@ def _compile(files: Mapping[str, str], target: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
-        for command in _commands(target):
+        for command in _commands(target, files):
             _run([sys.executable, "-m", "ziglang", "cc", "-target", target, *command], target, folder, environment)
         return Path(folder, "library").read_bytes()
 
 
-def _commands(target: str) -> list[list[str]]:
-    """What the compiler is asked for, one after the other."""
+def _commands(target: str, files: Iterable[str]) -> list[list[str]]:
+    """What the compiler is asked for, one after the other; a module of WebAssembly joins all C files but windows.c."""
+    if "wasm" in target:
+        return [[*_WEB, "-o", "library", *(name for name in files if name.endswith(".c") and name != "windows.c")]]
     if "windows" not in target:
         return [[OPTIMISE, *FLAGS, "-o", "library", "all.c", "-lm"]]
     objects = [[OPTIMISE, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]

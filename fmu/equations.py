@@ -27,6 +27,10 @@ _SWITCHES = frozenset(
 )
 
 
+#: Derivatives below this share of the largest, in nominals, may be round-off of terms that cancel.
+FELT = 1e-9
+
+
 def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> FlatModel:
     """The model without the parameters that cannot move any rate, output, checked argument or relation.
 
@@ -97,9 +101,26 @@ def _parts(flat: FlatModel) -> tuple[list[Any], Any]:
 def _moving(flat: FlatModel) -> set[int]:
     """Positions of the parameters with an effect."""
     p, (_, column) = flat.p, _parts(flat)
+    moving = _felt(flat, column)
     held = _columns(ca.jacobian_sparsity(column, p))
-    moving = _columns(ca.sparsify(ca.jacobian(ca.cse(column), p)).sparsity())
+    if doubtful := sorted(held - moving):
+        slopes = ca.sparsify(ca.jacobian(ca.cse(column), p[doubtful])).sparsity()
+        moving |= {doubtful[k] for k in _columns(slopes)}
     return moving | _switching(column, p) if held - moving else moving
+
+
+def _felt(flat: FlatModel, column: Any) -> set[int]:
+    """Positions of the parameters with a derivative, beyond round-off, at a point near the start.
+
+    One sweep backwards finds them all; the others are looked at as expressions, which costs far more.
+    """
+    random = np.random.default_rng(0)
+    x, z, u, p = (flat.starts(kind) for kind in ("state", "algebraic", "input", "parameter"))
+    weights = ca.SX(ca.DM(random.uniform(1.0, 2.0, column.numel())))
+    slope = ca.densify(ca.jtimes(column, flat.p, weights, True))
+    found = ca.Function("felt", flat.point, [slope])(x * random.uniform(0.98, 1.02, len(x)), z, u, p).full().ravel()
+    size = np.abs(found * np.array([q.nominal for q in flat.parameters]))
+    return set(np.flatnonzero(size > FELT * np.nanmax(size, initial=0.0)).tolist())
 
 
 def _columns(sparsity: Any) -> set[int]:

@@ -38,6 +38,10 @@ PER_MINUTE = dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rp
 ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
 
 
+#: Units in which a person gives what the model has in SI.
+USUAL = {"W": "kW", "m": "mm"}
+#: A comma between digits.
+_COMMA = re.compile(r"\d,\d")
 #: Longest unit [characters].
 LONGEST = 80
 #: Powers of powers and exponents of three digits, which no unit has and whose values take for ever.
@@ -116,6 +120,23 @@ def split_quantity(text: str) -> tuple[float, str]:
         raise ValueError(f"{text!r} is no number with a unit") from None
 
 
+def refuse_comma(text: str, name: str) -> None:
+    """Refuse a number with a decimal comma.
+
+    Args:
+        text: as it is written
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: a comma between digits, with the number as it should be written
+    """
+    if _COMMA.search(text):
+        raise ScenarioError(
+            f'{name} = "{text}" has a decimal comma. Write "{text.replace(",", ".")}": a point, and nothing between'
+            " thousands."
+        )
+
+
 def to_si(value: object, unit: str, *, name: str = "value") -> float:
     """A value with its unit as a number in the SI unit `unit` of the model.
 
@@ -137,6 +158,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
                 f'{name} = {value} has no unit. Write "{value} {show_unit(unit)}" (expected a unit like {target}).'
             )
         return _finite(float(value), name, value)
+    refuse_comma(value, name)
     try:
         number, written = split_quantity(value)
     except ValueError:
@@ -144,8 +166,9 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
             f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".'
         ) from None
     if not written and target != "1":
+        usual = f'"{value} {USUAL[target]}" or ' if target in USUAL else ""
         raise ScenarioError(
-            f'{name} = "{value}" has no unit. Write "{value} {show_unit(unit)}" (expected a unit like {target}).'
+            f'{name} = "{value}" has no unit. Write {usual}"{value} {show_unit(unit)}" (expected a unit like {target}).'
         )
     if written == target:
         return _finite(number, name, value)

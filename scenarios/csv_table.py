@@ -116,6 +116,12 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
     return header, rows
 
 
+def read_header(path: Path) -> list[str]:
+    """Names of the columns of a CSV file, whatever stands below. Raises DataError as `read_cells`."""
+    lines = _lines(path, head_only=True)
+    return lines[0][1] if lines else read_cells(path)[0]
+
+
 def header_problems(name: str, header: Sequence[str]) -> list[str]:
     """Columns that are there twice or have no name.
 
@@ -130,19 +136,20 @@ def header_problems(name: str, header: Sequence[str]) -> list[str]:
     ]
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
+def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
     text = read_text(path, "CSV", DataError)
     written = visible(text.replace("\x00", "\ufffd")).splitlines()
     head = next((line for line in written if line.strip() and not line.startswith("#")), "")
     semicolons = head.count(";") > head.count(",")
-    reader = csv.reader(written, delimiter=";" if semicolons else ",")
+    reader = csv.reader([head] if head_only else written, delimiter=";" if semicolons else ",")
     try:
         rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
     if semicolons and (problem := _two_readings(path.name, rows)):
         raise DataError(problem)
-    cells = [(line, [_cell(cell, semicolons) for cell in row]) for line, row in rows]
+    plain = _cell if semicolons else str.strip
+    cells = [(line, list(map(plain, row))) for line, row in rows]
     return [(line, row) for line, row in cells if any(row)]
 
 
@@ -165,10 +172,18 @@ def _two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str |
     return None
 
 
-def _cell(cell: str, semicolons: bool) -> str:
+def _cell(cell: str) -> str:
     """A cell without spaces round it, its decimal comma as a point."""
     cell = cell.strip()
-    return f"{match[1]}.{match[2]}" if semicolons and (match := _COMMA.fullmatch(cell)) else cell
+    return f"{match[1]}.{match[2]}" if (match := _COMMA.fullmatch(cell)) else cell
+
+
+def numbers(cells: Sequence[str]) -> np.ndarray | None:
+    """The numbers of a column (n,), all at once; None where one of the cells holds no finite number."""
+    if not all(map(_NUMBER.fullmatch, cells)):
+        return None
+    found = np.fromiter(map(float, cells), float, len(cells))
+    return found if np.isfinite(found).all() else None
 
 
 def number(cell: str) -> float:

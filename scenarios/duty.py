@@ -23,7 +23,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
 from ..model.units import show_unit, to_si
-from .csv_table import number, raise_all, read_cells, split_unit
+from .csv_table import number, numbers, raise_all, read_cells, read_header, split_unit
 
 TIME = Quantity("time", "s", "time")
 
@@ -35,8 +35,7 @@ _LARGE = 1e6
 
 def duty_names(path: str | Path) -> tuple[str, ...]:
     """The inputs named in the header of a duty table, to tell which quantities it drives."""
-    header, _ = read_cells(Path(path))
-    return tuple(_split_header(cell)[0] for cell in header[1:])
+    return tuple(_split_header(cell)[0] for cell in read_header(Path(path))[1:])
 
 
 def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> Schedule:
@@ -62,7 +61,10 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
             continue
         if quantity.name in values:
             problems.append(f"{path.name} line 1: {quantity.name} is there twice. Keep one of its columns.")
-        values[quantity.name] = column = np.full(len(rows), np.nan)
+        whole = numbers([cells[i] for _, cells in rows])
+        values[quantity.name] = column = np.full(len(rows), np.nan) if whole is None else offset + slope * whole
+        if whole is not None and not any(map(quantity.problem, (column.min(), column.max()))):
+            continue
         for k, (line, cells) in enumerate(rows):
             try:
                 column[k] = _in_range(quantity, offset + slope * number(cells[i]))

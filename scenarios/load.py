@@ -17,8 +17,9 @@
     sources = { V = "assumed: one litre" }
 
 Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
-A part's values are those of its type; one of your own is "my_module:MyClass", see `use_parts`. A name "x_{a,b}" stands
-for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
+A part's values are those of its type; a type of your own is "my_module:MyClass", see `use_parts`. A value may be that
+of another part, r = "stage_1.r_2", see `references`. A name "x_{a,b}" stands for two parts, see `repeats`; what
+use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
 
@@ -35,16 +36,18 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion, visible
-from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
+from ..model.machines.spec import LAYOUTS, PartSpec, Spec, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from .assemblies import expand_assemblies
 from .csv_table import scale, split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import find_map, names_map
+from .housing import oil_problems
 from .own_types import load_installed_types, load_type
+from .references import in_order, look_up, refers
 from .repeats import expand
-from .scenario import Instrument, Protocol, Scenario
+from .scenario import DRIVES, Instrument, Protocol, Scenario, check_drives
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import (
@@ -95,11 +98,13 @@ def _find(name_or_path: str | Path) -> Path:
             return shipped
         if path.is_dir() and (path / "rig.toml").is_file():
             return path / "rig.toml"
-        if path.is_file() or path.suffix == ".toml":
+        if path.is_file():
             return path
     names = list_rigs()
     beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
-    close = suggestion(str(name_or_path), [*names, *beside])
+    close = suggestion(str(name_or_path), [*names, *beside]) or suggestion(f"{name_or_path}.toml", beside)
+    if path.suffix == ".toml" and not close:
+        return path
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
 
 
@@ -129,6 +134,7 @@ class _Loader:
         self.settable = quantities(self.types, settable)
         self.value_sources: dict[str, str] = {}
         self.parts: dict[str, PartValues] = {}
+        self.references: dict[str, str] = {}
 
     def _types(self) -> dict[str, type[Component]]:
         """Part -> its class, for the parts whose type is known."""
@@ -169,19 +175,22 @@ class _Loader:
         """All of the file, or all of its problems."""
         parts = self._parts()
         point = self._operating_point()
-        given = self._drive()
+        given, drives = self._drive()
         spec = self._spec(parts)
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
         self.problems.check()
-        nets(assemble(spec))  # ports of different kinds that meet
+        Problems(f"{self.file}: {problem}" for problem in oil_problems(spec)).check()
+        spec = spec.with_values(point).driven(given, drives)
+        nets(spec.assembly())  # ports of different kinds that meet
         return Scenario(
             name=self.name,
             doc=self.table.doc,
             kind=self.table.kind,
             path=self.path,
-            spec=spec.with_values(point).driven(given),
+            spec=spec,
             given=given,
+            drives=drives,
             operating_point=point,
             instruments=sensors,
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
@@ -189,6 +198,7 @@ class _Loader:
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
+            references=self.references,
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(self.table.errata),
             protocol=protocol,
@@ -198,24 +208,49 @@ class _Loader:
 
     def _parts(self) -> dict[str, PartValues]:
         parts = self.parts
-        for name, cls in self.types.items():
+        referring = {name: self._references(name) for name in self.types}
+        order, circle = in_order(referring)
+        if circle:
+            self.problems.append(f"{self.file}: values of {', '.join(circle)} refer to each other. Write a number.")
+            parts |= {name: PartValues() for name in circle}
+        for name, cls in ((name, self.types[name]) for name in order):
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
             try:
                 table |= {key: find_map(raw, self.path.parent) for key, raw in table.items() if names_map(raw)}
             except GearheatError as error:
                 self.problems += [f"{self.file} [part.{name}]: {problem}" for problem in error.problems]
                 table = {k: v for k, v in table.items() if not names_map(v)}
-            parts[name] = part_values(f"{self.file} [part.{name}]", name, cls, table)
+            whole = self._refer(name, table, referring[name])
+            parts[name] = PartValues() if whole is None else part_values(f"{self.file} [part.{name}]", name, cls, whole)
             self.problems += parts[name].problems
             self.value_sources |= {f"{name}.{key}": source for key, source in parts[name].sources.items()}
         return parts
 
+    def _references(self, name: str) -> dict[str, str]:
+        """Values of a part that stand for those of other parts: key -> path."""
+        table, known = self.table.part.get(name, {}), settable(self.types[name])
+        return {key: raw for key, raw in table.items() if key in known and refers(raw, self.types)}
+
+    def _refer(self, name: str, table: Mapping[str, Any], references: Mapping[str, str]) -> dict[str, Any] | None:
+        """The table of a part with numbers in the place of references, None where one names what is wrong itself."""
+        found, declared = dict(table), settable(self.types[name])
+        for key, ref in references.items():
+            source, unit = self.parts.get(ref.partition(".")[0]), declared[key].unit
+            if source is None or source.problems or not source.values:
+                return None
+            with self.problems:
+                value = look_up(f"{self.file} [part.{name}]: {key}", ref, unit, self.types, source.values)
+                found[key] = value if unit == "1" else f"{value!r} {unit}"
+        self.references |= {f"{name}.{key}": ref for key, ref in references.items()}
+        return None if any(found[key] == table[key] for key in references) else found
+
     def _operating_point(self) -> dict[str, float]:
         where = f"{self.file} [operating_point]"
-        sources, problems = sources_of(where, self.table.operating_point)
+        told = {key: value for key, value in self.table.operating_point.items() if key != DRIVES}
+        sources, problems = sources_of(where, told)
         self.problems += problems
         self.value_sources |= sources
-        written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
+        written = dict(paths({k: v for k, v in told.items() if k not in ABOUT}))
         point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
@@ -238,16 +273,20 @@ class _Loader:
                 found[path] = read(f"{where}: ", raw, self.settable[path])
         return found
 
-    def _drive(self) -> dict[str, tuple[str, ...]]:
+    def _drive(self) -> tuple[dict[str, tuple[str, ...]], str]:
+        """What is given at the shaft ends, and the end where power enters, "" if none is named."""
         ends = [name for name, cls in self.types.items() if cls.__name__ == "ShaftEnd"]
         for end in self.table.drive:
             if end not in ends:
                 close = suggestion(end, ends) or f" Shaft ends: {', '.join(ends) or 'none'}."
                 self.problems.append(f'{self.file} [drive]: "{end}" is no shaft end.{close}')
-        return {end: tuple(quantities) for end, quantities in self.table.drive.items()}
+        drives = self.table.operating_point.get(DRIVES, "")
+        with self.problems:
+            check_drives(f"{self.file} [operating_point]: {DRIVES}", drives, ends)
+        return {end: tuple(quantities) for end, quantities in self.table.drive.items()}, drives
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
-        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port)]
+        ports = {f"{name}.{key}": name for name, cls in self.types.items() for key in list_declared(cls, Port)}
         for net, members in self.table.connect.items():
             where = f"{self.file} [connect] {net}"
             self.problems += [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import hypot
 from pathlib import Path
@@ -13,9 +13,13 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
+from .references import followed
 from .shipped import FILES
 from .tables import DrivenTable, ErratumTable
 from .values import entry_values, in_range, quantities, readable, settable
+
+#: Key of the shaft end where power enters.
+DRIVES = "drives"
 
 
 @dataclass(frozen=True)
@@ -73,12 +77,14 @@ class Scenario:
     Args:
         given: shaft end -> which of w and tau are given there
         operating_point: path of an input -> value in SI
+        drives: the shaft end where power enters as the machine is meant, "" where the file names none
         instruments: what measured tables of the rig read
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         joint_uncertainties: reason -> path -> what its value changes by at one standard deviation of the reason, SI
         units: path -> unit in which its value is written
+        references: path of a value -> path of that of another part, which it follows
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig are taken
         data: the measured table that it comes with
@@ -92,12 +98,14 @@ class Scenario:
     spec: Spec
     given: Mapping[str, tuple[str, ...]]
     operating_point: Mapping[str, float]
+    drives: str = ""
     instruments: tuple[Instrument, ...] = ()
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
     joint_uncertainties: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    references: Mapping[str, str] = field(default_factory=dict)
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[ErratumTable, ...] = ()
     protocol: Protocol | None = None
@@ -150,9 +158,12 @@ class Scenario:
             ScenarioError: parts that do not exist
         """
         moved = {path: values[path] for path in self.inputs() if path in values}
+        references = {path: ref for path, ref in self.references.items() if path not in values}
+        spec = self.spec.with_values(values)
         return replace(
             self,
-            spec=self.spec.with_values(values),
+            spec=followed(spec, references, values, self.settable()) if references else spec,
+            references=references,
             operating_point={**self.operating_point, **moved},
             value_sources={**self.value_sources, **dict.fromkeys(values, source)},
             uncertainties={path: value for path, value in self.uncertainties.items() if path not in values},
@@ -165,12 +176,17 @@ class Scenario:
     def driven(self, given: Mapping[str, Iterable[str]]) -> Scenario:
         """The scenario with other quantities given at its shaft ends."""
         fixed = {end: tuple(quantities) for end, quantities in given.items()}
-        return replace(self, spec=self.spec.driven(fixed), given=fixed)
+        return replace(self, spec=self.spec.driven(fixed, self.drives), given=fixed)
 
     def driven_by(self, names: Iterable[str]) -> Scenario:
         """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
         shafts = self.shaft_paths()
         return self.driven(deduce_drive(self.given, [name for name in names if name in shafts]))
+
+    def driven_by_torques(self) -> Scenario:
+        """The scenario with signed torques given where its loads are."""
+        signed = {"load": "tau"}
+        return self.driven({end: [signed.get(key, key) for key in keys] for end, keys in self.given.items()})
 
     def shaft_paths(self) -> set[str]:
         """Paths of the quantities that may be given at the shaft ends."""
@@ -255,21 +271,37 @@ class Scenario:
 def deduce_drive(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
 
-    As many quantities as before are given: with two torques named, the speed follows.
+    Torque and load are one kind. As many quantities as before are given: with two torques named, the speed follows.
 
     Args:
         given: shaft end -> quantities given there so far
         names: paths of the shaft quantities to be given
     """
     named = [tuple(name.rsplit(".", 1)) for name in names]
-    kinds = {quantity for _, quantity in named}
+    kinds = {quantity == "w" for _, quantity in named}
     before = [(end, quantity) for end, quantities in given.items() for quantity in quantities]
-    spare = [(end, quantity) for end, quantity in before if quantity not in kinds]
+    spare = [(end, quantity) for end, quantity in before if (quantity == "w") not in kinds]
     kept = spare[: max(0, len(before) - len(named))]
     drive: dict[str, tuple[str, ...]] = {}
     for end, quantity in (*kept, *named):
         drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))
     return drive
+
+
+def check_drives(where: str, end: object, ends: Sequence[str]) -> None:
+    """Refuse what is no shaft end where power may enter; "" stands for none.
+
+    Args:
+        where: place of the name, for messages
+        end: its name
+        ends: those there are
+
+    Raises:
+        ScenarioError: there is no such end
+    """
+    if end and end not in ends:
+        close = suggestion(str(end), ends) or f" Shaft ends: {', '.join(ends) or 'none'}."
+        raise ScenarioError(f'{where} = "{end}" is no shaft end.{close}')
 
 
 def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:

@@ -95,10 +95,12 @@ class RigTable(Strict):
     kind: str = Field(description='a machine such as "planetary", or "network" for parts and connections of its own')
     doc: str = Field(description="what the rig is, in a sentence")
     reproduces: str = Field("", description="what published results the rig reproduces, in a line, or that it has none")
-    drive: dict[str, list[Literal["w", "tau"]]] = Field(
-        description='what is given at the shaft ends, e.g. carrier = ["w", "tau"]'
+    drive: dict[str, list[Literal["w", "tau", "load"]]] = Field(
+        description='what is given at the shaft ends, e.g. carrier = ["w", "tau"], or input = ["w"], output = ["load"]'
     )
-    operating_point: dict[str, Any] = Field(description="input -> value with its unit, and a source")
+    operating_point: dict[str, Any] = Field(
+        description="input -> value with its unit, drives = the end where power enters, and a source"
+    )
     part: dict[str, dict[str, Any]] = Field(description="a table [part.NAME] for each part")
     connect: dict[str, list[str]] = Field({}, description="name of a net -> list of the ports that meet")
     sensors: dict[str, SensorTable] = Field(

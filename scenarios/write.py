@@ -11,11 +11,11 @@ from ..model.core.declare import Choice, list_declared
 from ..model.core.flat import Quantity
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
-from .scenario import Instrument, Scenario
+from .scenario import DRIVES, Instrument, Scenario
 from .values import UNCERTAINTIES, settable
 
 #: Choices that follow from [drive].
-_DRIVEN = ("given", "dynamic")
+_DRIVEN = ("given", "dynamic", "drives")
 
 #: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
 SET = "set on the command line"
@@ -37,7 +37,8 @@ def _lines(scenario: Scenario) -> Iterator[str]:
     known = scenario.settable()
     point = {path: _value(value, known[path].unit) for path, value in scenario.operating_point.items()}
     sources = {path: _source(scenario, path) for path in point}
-    yield from _table("operating_point", point, sources=sources) or ["", "[operating_point]"]
+    drives = {DRIVES: scenario.drives} if scenario.drives else {}
+    yield from _table("operating_point", point | drives, sources=sources) or ["", "[operating_point]"]
     for part in scenario.spec.parts:
         cls = scenario.spec.types[part.type]
         values = _part_values(part, cls)

@@ -9,7 +9,9 @@
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef uint64_t lanes_bits __attribute__((vector_size(8 * LANES)));
 
-#if LANES == 8
+#if LANES == 2
+#define lanes_all(v) ((lanes){v, v})
+#elif LANES == 8
 #define lanes_all(v) ((lanes){v, v, v, v, v, v, v, v})
 #else
 #define lanes_all(v) ((lanes){v, v, v, v})

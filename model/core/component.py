@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, nextafter
 from typing import Any, ClassVar
 
@@ -25,10 +26,37 @@ class Equation:
     lhs: Any
     rhs: Any
 
-    @property
+    @cached_property
     def residual(self) -> Any:
         """lhs - rhs."""
         return self.lhs - self.rhs
+
+
+@dataclass(frozen=True, eq=False)
+class Balance(Equation):
+    """Terms whose sum is zero, which any one of them follows from.
+
+    Args:
+        terms: symbols (SX, 1 each)
+    """
+
+    terms: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, name: str, terms: Iterable[Any]) -> Balance:
+        """The balance of some terms.
+
+        Args:
+            name: what it says
+            terms: symbols (SX, 1 each)
+        """
+        terms = tuple(terms)
+        return cls(name, sum(terms, ca.SX(0)), ca.SX(0), terms)
+
+    def rest(self, term: Any) -> Any:
+        """What one of the terms (SX, 1), of which each occurs once, is by the others."""
+        own = term.element_hash()
+        return -sum((other for other in self.terms if other.element_hash() != own), ca.SX(0))
 
 
 #: Identifier of a cause -> parameters of a part that carry it, with the exponent of the cause's factor in each.
@@ -48,7 +76,7 @@ def equation(name: str, lhs: Any, rhs: Any) -> Equation:
         lhs: one side: a number or a CasADi expression
         rhs: the other side
     """
-    return Equation(name, ca.SX(lhs), ca.SX(rhs))
+    return Equation(name, *(side if type(side) is ca.SX else ca.SX(side) for side in (lhs, rhs)))
 
 
 class Component:
@@ -85,7 +113,7 @@ class Component:
         self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
         self.states: dict[str, State] = {k: d for k, d in list_declared(cls, State).items() if self.has(k)}
         self.variables: dict[str, Variable] = list_declared(cls, Variable)
-        self.inputs: dict[str, Input] = list_declared(cls, Input)
+        self.inputs: dict[str, Input] = {k: d for k, d in list_declared(cls, Input).items() if self.has(k)}
         names = (*parameters, *self.states, *self.variables, *self.inputs)
         self.symbols = {k: ca.SX.sym(f"{name}.{k}") for k in names}
         self.derivatives = {k: ca.SX.sym(f"der({name}.{k})") for k in self.states}
@@ -98,7 +126,11 @@ class Component:
 
     def _problems(self, values: dict[str, Any]) -> list[str]:
         cls = type(self)
-        settable: dict[str, Declaration] = {**list_declared(cls, Parameter), **list_declared(cls, State), **self.inputs}
+        settable: dict[str, Declaration] = {
+            **list_declared(cls, Parameter),
+            **list_declared(cls, State),
+            **list_declared(cls, Input),
+        }
         where = f"{type(self).__name__} {self.name}"
         found = []
         for key in values.keys() - settable.keys():
@@ -162,7 +194,19 @@ class Component:
         for relation, value in find_broken([r for r, _ in known], [v for _, v in known]):
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
-            yield relation.problem(value, given)
+            yield relation.problem(value, given) + self.way_out(relation.name)
+
+    def sizes(self) -> Mapping[str, Any]:
+        """Lengths that other parts may have from it, by key, as expressions of its parameters [m]."""
+        return {}
+
+    def way_out(self, relation: str) -> str:
+        """A value with which a relation that does not hold would, as a sentence behind its remedy; "" for none.
+
+        Args:
+            relation: its name
+        """
+        return ""
 
     def number_at(self, expression: Any, values: Mapping[str, float]) -> float:
         """Value of an expression of the parameters.
@@ -231,7 +275,7 @@ class Component:
         return ()
 
     def has(self, name: str) -> bool:
-        """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
+        """Whether a port, state, input or parameter exists under the component's choices and what it is `told`."""
         return True
 
     def der(self, state: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -87,10 +88,10 @@ def _merge_nets(assembly: Assembly, ports: dict[str, Port]) -> list[list[Port]]:
 
 
 def _problems(assembly: Assembly, ports: dict[str, Port]) -> list[str]:
-    names = [part.name for part in assembly.parts]
+    names = Counter(part.name for part in assembly.parts)
     problems = [
         f'{assembly.name}: two parts are called "{n}". Rename one.'
-        for n in sorted({n for n in names if names.count(n) > 1})
+        for n in sorted(n for n, count in names.items() if count > 1)
     ]
     absent = _absent(assembly)
     for connection in assembly.connections:

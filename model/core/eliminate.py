@@ -204,8 +204,12 @@ def typical_sizes(matrix: Any, typical: Mapping[int, float]) -> list[float]:
         matrix: SX
         typical: a typical value of each symbol by its hash; 1 for others
     """
+    entries = matrix.nonzeros()
+    if all(e.is_symbolic() or e.is_constant() for e in entries):
+        values = [typical.get(e.element_hash(), 1.0) if e.is_symbolic() else float(e) for e in entries]
+        return [value if np.isfinite(value) else 1.0 for value in values]
     free = ca.symvar(matrix)
     point = [typical.get(symbol.element_hash(), 1.0) for symbol in free]
-    symbols, entries = ca.vertcat(ca.SX(0, 1), *free), ca.vertcat(ca.SX(0, 1), *matrix.nonzeros())
-    values = np.array(ca.Function("sizes", [symbols], [entries])(point)).ravel()
-    return [value if np.isfinite(value) else 1.0 for value in values.tolist()]
+    sizes = ca.Function("sizes", [ca.vertcat(ca.SX(0, 1), *free)], [ca.vertcat(ca.SX(0, 1), *entries)])
+    found = np.array(sizes(point)).ravel()
+    return [value if np.isfinite(value) else 1.0 for value in found.tolist()]

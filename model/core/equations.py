@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -50,13 +51,13 @@ def rows_of(part: Component) -> list[Equation]:
 
 def _row(part: Component, e: Equation) -> Equation:
     for side in (e.lhs, e.rhs):
-        if ca.SX(side).numel() != 1:
+        if (side if type(side) is ca.SX else ca.SX(side)).numel() != 1:
             shape = " x ".join(map(str, ca.SX(side).shape))
             raise StructureError(
                 f'{part.name}: a side of equation "{e.name}" has the shape {shape}. Each side is one number: yield an '
                 "equation for every component."
             )
-    return Equation(f"{part.name}: {e.name}", e.lhs, e.rhs)
+    return replace(e, name=f"{part.name}: {e.name}")
 
 
 def energies_of(part: Component) -> tuple[list[Any], Any]:
@@ -145,6 +146,6 @@ def check_symbols(rows: Sequence[Equation], unknowns: Sequence[Unknown], parts: 
 
 def _no_number(expression: Any) -> bool:
     """Whether a constant in an expression is not a number."""
-    f = ca.Function("f", ca.symvar(ca.SX(expression)), [expression])
+    f = ca.Function("f", [column(ca.symvar(ca.SX(expression)))], [expression])
     constants = (k for k in range(f.n_instructions()) if f.instruction_id(k) == ca.OP_CONST)
     return any(math.isnan(f.instruction_constant(k)) for k in constants)

@@ -13,7 +13,7 @@ from .component import Equation
 from .connect import Assembly, floating, nets
 from .declare import Given, Port
 from .reduce import Constraint, Known, tie
-from .solve import Matching, Unknown, columns_of, incidence
+from .solve import Matching, Unknown
 
 #: Names shown of a set.
 SHOWN = 4
@@ -24,7 +24,11 @@ MOST = 5
 
 
 def check_structure(
-    assembly: Assembly, rows: Sequence[Equation], unknowns: Sequence[Unknown], typical: Mapping[int, float]
+    assembly: Assembly,
+    rows: Sequence[Equation],
+    unknowns: Sequence[Unknown],
+    columns: Sequence[Sequence[int]],
+    typical: Mapping[int, float],
 ) -> None:
     """Refuse a system unless every unknown has an equation of its own and every temperature a level.
 
@@ -35,12 +39,12 @@ def check_structure(
         assembly: the parts
         rows: all equations, rigid couplings reduced
         unknowns: all unknowns
+        columns: for each equation the positions of its unknowns
         typical: typical value of every symbol by its hash
 
     Raises:
         StructureError: an unknown has no equation of its own, or a temperature no level
     """
-    columns = columns_of(incidence(rows, unknowns))
     if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):
         raise StructureError(problems)
     matching = Matching(columns, len(unknowns))

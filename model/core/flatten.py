@@ -10,14 +10,14 @@ from typing import Any
 import casadi as ca
 
 from ..sources import LawInfo, LawUse, recording
-from .component import Component, Equation
+from .component import Balance, Component, Equation
 from .connect import Assembly, nets
 from .declare import Declaration, Variable
 from .equations import check_symbols, energies_of, rows_of
 from .faults import check_structure
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
-from .solve import Solution, Unknown, column, inline, scaled_residual, solve, start_of
+from .solve import Solution, Unknown, column, inline, pattern_of, scaled_residual, solve, start_of
 
 
 def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
@@ -42,13 +42,13 @@ def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
         unknowns += _unknowns(part)
     aliased = _Alias(alias)
     lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
-    rows = [Equation(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
+    rows = [replace(r, lhs=lhs, rhs=rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
     check_symbols(rows, unknowns, assembly.parts)
     typical = _typical(assembly, unknowns)
     reduced = reduce(assembly, rows, unknowns, typical)
-    check_structure(assembly, reduced.rows, reduced.unknowns, typical)
+    check_structure(assembly, reduced.rows, reduced.unknowns, reduced.columns, typical)
     solution = Solution(typical)
-    solve(assembly.name, reduced.rows, reduced.unknowns, solution)
+    solve(assembly.name, reduced.rows, reduced.unknowns, solution, pattern_of(reduced.columns))
     return _flat_model(assembly, solution, aliased, checks, tuple(laws), reduced.joined, frozenset(flows))
 
 
@@ -69,7 +69,8 @@ class _Alias:
 
 def _nets(assembly: Assembly) -> tuple[list[Equation], list[Unknown], list[tuple[Any, Any]]]:
     """Flow balances, the unknowns of the nets, and which port symbols are the same."""
-    rows, unknowns, alias = [], [], []
+    rows: list[Equation] = []
+    unknowns, alias = [], []
     for net in nets(assembly):
         first = net[0]
         for name, d in type(first).potentials().items():
@@ -79,8 +80,7 @@ def _nets(assembly: Assembly) -> tuple[list[Equation], list[Unknown], list[tuple
             unknowns += [
                 Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal, unit=flow.unit) for port in net
             ]
-            total = sum((port.symbols[name] for port in net), ca.SX(0))
-            rows.append(Equation(f"sum of {name} at {first.name}", total, ca.SX(0)))
+            rows.append(Balance.of(f"sum of {name} at {first.name}", (port.symbols[name] for port in net)))
     return rows, unknowns, alias
 
 
@@ -197,6 +197,8 @@ def _output(part: Component, key: str, declaration: Declaration, joined: Mapping
 
 def _imbalance(part: Component) -> Any:
     """Power that enters a part through its ports and from outside, less what its states gain [W]."""
+    taken = sum((port.power() for port in part.ports.values()), sum(part.supplied_power(), ca.SX(0)))
+    if not part.states:
+        return taken
     states = column([part.symbols[k] for k in part.states])
-    gained = ca.jtimes(ca.SX(part.stored_energy()), states, column(list(part.derivatives.values())))
-    return sum((port.power() for port in part.ports.values()), sum(part.supplied_power(), ca.SX(0))) - gained
+    return taken - ca.jtimes(ca.SX(part.stored_energy()), states, column(list(part.derivatives.values())))

@@ -153,11 +153,13 @@ class Constraint:
 class Reduced:
     """The equations and unknowns without rigid couplings.
 
-    `joined` says of each state that is none any more, by path, which ones it follows.
+    `joined` says of each state that is none any more, by path, which ones it follows; `columns` the positions of the
+    unknowns of each equation.
     """
 
     rows: list[Equation]
     unknowns: list[Unknown]
+    columns: list[list[int]]
     joined: dict[str, str] = field(default_factory=dict)
 
 
@@ -176,14 +178,14 @@ def reduce(assembly: Assembly, rows: list[Equation], unknowns: list[Unknown], ty
     Raises:
         StructureError: start values given for two states that follow each other do not fit together
     """
-    reduced = Reduced(list(rows), list(unknowns))
     columns = columns_of(incidence(rows, unknowns))
+    reduced = Reduced(list(rows), list(unknowns), columns)
     if not Matching(columns, len(unknowns)).spare_rows:
         return reduced
     known = Known.of(assembly, typical)
     standing = _standing(rows, known)
     place = {u.symbol.element_hash(): i for i, u in enumerate(unknowns)}
-    while (found := _coupling(reduced, columns, known)) is not None:
+    while (found := _coupling(reduced, known)) is not None:
         relation, k = found
         follower = relation.states[k]
         for row in standing[_path(*follower)]:
@@ -203,8 +205,9 @@ def _standing(rows: list[Equation], known: Known) -> dict[str, list[int]]:
     return found
 
 
-def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Constraint, int] | None:
+def _coupling(reduced: Reduced, known: Known) -> tuple[Constraint, int] | None:
     """The first relation between states alone, and which of them is to follow."""
+    columns = reduced.columns
     matching = Matching(columns, len(reduced.unknowns))
     for spare in matching.spare_rows:
         chosen = matching.too_many(spare)

@@ -19,7 +19,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import maximum_bipartite_matching, min_weight_full_bipartite_matching
 
 from ..errors import StructureError
-from .component import Equation
+from .component import Balance, Equation
 from .eliminate import Factors, Singular, typical_sizes
 
 #: Cost of letting an equation determine an unknown that one side of it gives.
@@ -84,7 +84,9 @@ def incidence(rows: Sequence[Equation], unknowns: Sequence[Unknown]) -> Any:
     return ca.jacobian_sparsity(column([r.residual for r in rows]), column([u.symbol for u in unknowns]))
 
 
-def solve(model: str, rows: Sequence[Equation], unknowns: Sequence[Unknown], solution: Solution) -> None:
+def solve(
+    model: str, rows: Sequence[Equation], unknowns: Sequence[Unknown], solution: Solution, pattern: Any = None
+) -> None:
     """Add the definitions of all unknowns to a solution. The system must be structurally sound.
 
     Args:
@@ -92,11 +94,12 @@ def solve(model: str, rows: Sequence[Equation], unknowns: Sequence[Unknown], sol
         rows: the equations
         unknowns: as many as equations
         solution: takes up the definitions, in order
+        pattern: their incidence, where it is known
 
     Raises:
         StructureError: a linear block is singular
     """
-    _, row_order, column_order, row_blocks, column_blocks, _, _ = incidence(rows, unknowns).btf()
+    _, row_order, column_order, row_blocks, column_blocks, _, _ = (pattern or incidence(rows, unknowns)).btf()
     for first, last, left, right in zip(row_blocks, row_blocks[1:], column_blocks, column_blocks[1:], strict=False):
         block_rows = [rows[i] for i in row_order[first:last]]
         block_unknowns = [unknowns[i] for i in column_order[left:right]]
@@ -104,11 +107,10 @@ def solve(model: str, rows: Sequence[Equation], unknowns: Sequence[Unknown], sol
 
 
 def _solve_block(model: str, rows: list[Equation], unknowns: list[Unknown], solution: Solution) -> None:
-    z = column([u.symbol for u in unknowns])
-    if len(rows) == 1 and (definition := _explicit(rows[0], z)) is not None:
-        solution.define(z, definition)
+    if len(rows) == 1 and (definition := _explicit(rows[0], unknowns[0].symbol)) is not None:
+        solution.define(unknowns[0].symbol, definition)
         return
-    residual = column([r.residual for r in rows])
+    z, residual = column([u.symbol for u in unknowns]), column([r.residual for r in rows])
     matrix = ca.jacobian(residual, z)
     if not ca.depends_on(matrix, z):
         _eliminate(model, matrix, ca.substitute(residual, z, ca.SX.zeros(*z.shape)), unknowns, solution)
@@ -117,9 +119,12 @@ def _solve_block(model: str, rows: list[Equation], unknowns: list[Unknown], solu
 
 
 def _explicit(row: Equation, z: Any) -> Any:
-    """The other side where one side is the unknown itself, else None."""
+    """The other terms of a balance, the other side where one side is the unknown itself, else None."""
+    if isinstance(row, Balance):
+        return row.rest(z)
+    own = z.element_hash()
     for side, other in ((row.lhs, row.rhs), (row.rhs, row.lhs)):
-        if ca.is_equal(ca.SX(side), z, 0) and not ca.depends_on(other, z):
+        if side.is_symbolic() and side.element_hash() == own and not ca.depends_on(other, z):
             return other
     return None
 
@@ -300,3 +305,9 @@ def columns_of(sparsity: Any) -> list[list[int]]:
     for i, j in zip(*sparsity.get_triplet(), strict=True):
         found[i].append(j)
     return found
+
+
+def pattern_of(columns: Sequence[Sequence[int]]) -> Any:
+    """The square CasADi sparsity of rows with entries in some columns each."""
+    row = [i for i, places in enumerate(columns) for _ in places]
+    return ca.Sparsity.triplet(len(columns), len(columns), row, [j for places in columns for j in places])

@@ -52,8 +52,16 @@ class Spec:
 
     def flat(self) -> FlatModel:
         """The flat model; made once of equal specs. Raises GearheatError where there is none."""
+        return _flat(self._whole)
+
+    def assembly(self) -> Assembly:
+        """The parts, as `assemble` makes them; made once of equal specs."""
+        return _assembly(self._whole)
+
+    @property
+    def _whole(self) -> _Whole:
         classes = tuple(self.types.get(part.type) for part in self.parts)
-        return _flat(_Whole(self, repr((self.name, self.doc, self.parts, self.connections)), classes))
+        return _Whole(self, repr((self.name, self.doc, self.parts, self.connections)), classes)
 
     def part(self, name: str) -> PartSpec:
         """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
@@ -104,10 +112,14 @@ class Spec:
             types={**self.types, **(types or {})},
         )
 
-    def driven(self, given: Mapping[str, Iterable[str]]) -> Spec:
-        """The spec with the quantities ("w", "tau") that are given at each shaft end; none at those not named.
+    def driven(self, given: Mapping[str, Iterable[str]], drives: str = "") -> Spec:
+        """The spec driven at its shaft ends.
 
         A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+
+        Args:
+            given: shaft end -> "w", "tau" and "load" that are given there; nothing at those not named
+            drives: the end where power enters, if a load is given there, too; it leaves at all others
 
         Raises:
             ScenarioError: names that are no shaft end
@@ -118,6 +130,7 @@ class Spec:
             raise ScenarioError(
                 [f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown]
             )
+        choices |= {f"{end}.drives": end == drives for end in self.of_type("ShaftEnd")}
         dynamic = not any("w" in quantities for quantities in given.values())
         return self.with_values(choices | {f"{name}.dynamic": dynamic for name in self.of_type("Inertia")})
 
@@ -150,5 +163,10 @@ class _Whole:
 
 
 @lru_cache(KEPT)
+def _assembly(whole: _Whole) -> Assembly:
+    return assemble(whole.spec)
+
+
+@lru_cache(KEPT)
 def _flat(whole: _Whole) -> FlatModel:
-    return flatten(assemble(whole.spec))
+    return flatten(_assembly(whole))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
@@ -45,7 +45,29 @@ class Friction(Component):
         yield equation("heat to the outer body", self.outer.Q_flow, -(1 - self.inner_share) * self.P_loss)
 
 
-class LipSeal(Friction):
+#: Diameter under a seal over the bores of the bearings on its shaft: beyond, one of them has another unit [1].
+SEAT = (0.2, 4.0)
+
+
+class RadialSeal(Friction):
+    """Base of radial lip seals: on a shaft that its bearings hold, too."""
+
+    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+
+    def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterator[str]:
+        """A seat that is not of the size of the bearings' bores."""
+        held = [part for part in met["shaft"] if part.role == "bearing" and "d" in part.values]
+        bores = {part.name: part.values["d"] for part in held}
+        d_sh = self.values["d_sh"]
+        if bores and not SEAT[0] * min(bores.values()) <= d_sh <= SEAT[1] * max(bores.values()):
+            name = max(bores, key=lambda bearing: bores[bearing])
+            yield (
+                f"{self.name} is on a shaft of d_sh = {1000 * d_sh:.4g} mm, and {name} on the same one has a bore of"
+                f" {1000 * bores[name]:.4g} mm. Give {self.name} its own d_sh, or {name} its own bearing."
+            )
+
+
+class LipSeal(RadialSeal):
     """Radial lip seal: a torque that depends on the shaft's diameter alone.
 
     Laws for lip seals differ by more than three times at large shafts. Recommended is "square": the force of the lip on
@@ -56,7 +78,6 @@ class LipSeal(Friction):
     role: ClassVar[str] = "seal"
 
     law = Choice(("square", "linear"), "how the torque grows with the diameter", default="square")
-    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
     c_sh = Parameter("N/m", "friction torque per square of the diameter, with square", nominal=50.0, at_least=0.0)
     c_d = Parameter("N", "friction torque per diameter, with linear: 2.429 N for nitrile rubber", at_least=0.0)
 
@@ -80,7 +101,7 @@ class LipSeal(Friction):
             yield {"law": name} | {f"{d} mm [N.m]": f"{float(torque(d / 1000)):.3g}" for d in (30, 55, 100)}
 
 
-class OilLipSeal(Friction):
+class OilLipSeal(RadialSeal):
     """Radial lip seal whose torque falls as its oil warms, and is higher in thicker oil.
 
     Its source takes the oil of the housing. With `warms = "lip"` it rubs at the temperature of its lip, which its own
@@ -94,7 +115,6 @@ class OilLipSeal(Friction):
     warms = Choice(("oil", "lip"), "whose temperature says how it rubs", default="oil")
     h = Parameter("W/(m2.K)", "heat transfer coefficient between shaft and oil", nominal=500.0, above=0.0)
     k = Parameter("W/(m.K)", "conductivity of the shaft", nominal=45.0, above=0.0)
-    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
     T_lip = Output("K", "temperature at which it rubs", nominal=350.0)
     nu_40 = Parameter("m2/s", "kinematic viscosity of the oil at 40 degC", nominal=1e-4, above=1e-6)
 

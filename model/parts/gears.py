@@ -31,6 +31,12 @@ from .teeth import ToothedPart
 SHIFT_LEFT = 0.05
 #: Profile shift by which teeth may be undercut: beyond it no tooth is left to carry.
 UNDERCUT_LEFT = 0.5
+#: The relation of centre distance and teeth.
+FITS = "a_w fits z_1, z_2, m_n, beta, x_1, x_2"
+#: Centre distances among which one fits, over that without profile shift [1].
+NEAR = (0.97, 1.15)
+#: How often the range of centre distances is halved.
+HALVINGS = 20
 #: Teeth that a ring has more than its pinion, at least: below, standard tips interfere.
 LEAST_DIFFERENCE = 8.0
 #: How far the tips of a ring may reach; a little beyond the pinion's involute they are shortened in practice.
@@ -85,13 +91,25 @@ class GearPair(ToothedPart):
         """What makes two gears mesh at their centre distance, and teeth that can be cut."""
         yield from super().relations()
         shift = self.shift_sum() - self.x_1 - self.x_2
-        yield require(self, "a_w fits z_1, z_2, m_n, beta, x_1, x_2", shift, -SHIFT_LEFT, SHIFT_LEFT)
+        yield require(self, FITS, shift, -SHIFT_LEFT, SHIFT_LEFT)
         yield require(self, "the teeth overlap", self.eps_alpha, 1.0)
         z_a, z_b = self.teeth()
         yield from self.cut("1", z_a, self.x_1)
         yield from self.cut("2", z_b, self.x_2)
         if isinstance(self.film, FilmMap):
             yield fits_map(self, self.film, self.E / (1 - self.poisson**2))
+
+    def way_out(self, relation: str) -> str:
+        """The centre distance that fits the teeth and their profile shifts."""
+        if relation != FITS:
+            return ""
+        excess = self.shift_sum() - self.x_1 - self.x_2
+        low, high = (k * self.number_at(ca.fabs(self.radius(sum(self.teeth()))), self.values) for k in NEAR)
+        for _ in range(HALVINGS):
+            a_w = (low + high) / 2
+            far = self.number_at(excess, {**self.values, "a_w": a_w}) * self.number_at(sum(self.teeth()), self.values)
+            low, high = (low, a_w) if far > 0 else (a_w, high)
+        return f" a_w = {1000 * low:.5g} mm fits these teeth."
 
     def cut(self, key: str, z: Num, x: Num) -> Iterator[Related]:
         """Teeth that can be cut.

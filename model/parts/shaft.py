@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..core.component import SOUND, Component, Equation, Faults, equation
 from ..core.declare import Choice, Given, Input, Output, Parameter, State
-from ..laws.smooth import Num, smooth_abs
+from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import Flange, ShaftReading
 
 #: Speed below which the loss torque of the gearbox fades [rad/s]: far below any speed that is read.
@@ -24,22 +24,34 @@ OPEN_LOOP = (
 
 
 class ShaftEnd(Component):
-    """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
+    """A shaft that leaves the gearbox. What `given` names ("w", "tau", "load") is an input, the rest follows.
+
+    A load has no sign: it is taken against the rotation, in either direction, or given with it where the end `drives`.
+    """
 
     role: ClassVar[str] = "shaft_end"
 
     flange = Flange(must_meet=True)
     reading = ShaftReading()
 
-    given = Choice((), "which of w and tau are given from outside", default=())
+    given = Choice((), "which of w, tau and load are given from outside", default=())
+    drives = Choice((), "whether power enters here where the load is given", default=False)
     w = Given("rad/s", "angular velocity", nominal=10.0)
     tau = Given("N.m", "torque into the gearbox", nominal=100.0)
+    load = Given("N.m", "load, a torque without a sign", nominal=100.0, at_least=0.0)
     P = Output("W", "power into the gearbox", nominal=1000.0)
+
+    def has(self, name: str) -> bool:
+        """There is a load where it is given."""
+        return name != "load" or name in self.choices["given"]
 
     def equations(self) -> Iterator[Equation]:
         """What enters here enters the flange's net."""
         yield equation("speed of the shaft", self.flange.w, self.w)
         yield equation("torque into the gearbox", self.flange.tau, -self.tau)
+        if "load" in self.given:
+            along = self.load * friction_sign(self.w)
+            yield equation("load along or against the rotation", self.tau, along if self.drives else -along)
         yield equation("power", self.P, self.w * self.tau)
         yield equation("speed read", self.reading.w, self.w)
         yield equation("torque read", self.reading.tau, self.tau)

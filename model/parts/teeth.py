@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -82,6 +82,10 @@ class ToothedPart(Component):
     def radius(self, z: Num) -> Num:
         """Reference radius of a gear of z teeth [m]."""
         return reference_diameter(self.m_n, z, self.beta) / 2
+
+    def sizes(self) -> Mapping[str, Num]:
+        """Reference radii of the first two gears."""
+        return {"r_1": self.radius(self.z_1), "r_2": self.radius(self.z_2)}
 
     def working_angle(self) -> tuple[Num, Num]:
         """Transverse pressure angle of the first two gears, at the reference and the working centre distance [rad]."""

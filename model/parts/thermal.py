@@ -130,6 +130,10 @@ class CylinderWall(Conductor):
         return cylinder_wall(self.k, self.L, self.r_i, self.r_o)
 
 
+#: Room in which a gearbox still has oil [K]: that of the warmest oil of the laws, 150 degC.
+HOTTEST_ROOM = 423.15
+
+
 class Room(Component):
     """The surroundings: air of a given temperature and speed, and a floor of the same temperature.
 
@@ -141,7 +145,7 @@ class Room(Component):
     air = AirPort(must_meet=False)
     floor = HeatPort(must_meet=False)
 
-    T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
+    T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST_ROOM, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     k_air = Parameter("1", "factor on the speed of the air, 1 for the speed as given", default=1.0, at_least=0.0)
     altitude = Parameter("m", "height above sea level, where the air is thinner", 500.0, optional=True)

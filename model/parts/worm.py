@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 import casadi as ca
@@ -65,6 +65,10 @@ class WormPair(Component):
     v_slide = Output("m/s", "sliding speed of the flanks")
     F_t = Output("N", "tangential force on the wheel, the axial one on the worm", nominal=1000.0)
     locking = Output("1", "friction over that from which on the wheel cannot drive")
+
+    def sizes(self) -> Mapping[str, Num]:
+        """Mean radius of the worm, pitch radius of the wheel."""
+        return {"r_1": self.d_1 / 2, "r_2": self.m_x * self.z_2 / 2}
 
     def equations(self) -> Iterator[Equation]:
         """What enters at one shaft leaves at the other, less the friction of the sliding flanks."""

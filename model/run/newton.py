@@ -1,4 +1,4 @@
-"""Roots of small dense systems: damped Newton, homotopy, and pseudo-transient continuation along the dynamics.
+"""Roots of systems, dense or sparse: damped Newton, homotopy, and pseudo-transient continuation along the dynamics.
 
 The C code of FMU and batch holds the same methods and takes the numbers in capitals from here.
 """
@@ -7,11 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+#: A Jacobian: an array, or a sparse matrix of columns.
+Matrix = Any
 
 #: z -> (residual, Jacobian).
-System = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+System = Callable[[np.ndarray], tuple[np.ndarray, Matrix]]
 
 #: A root is found when the next correction is below this, in scales.
 CONVERGED = 1e-10
@@ -54,6 +60,9 @@ LONGEST = 1e9
 
 #: Shortest step [s] before the pseudo-transient gives up.
 SHORTEST = 1e-12
+
+#: Rates below this share of the fastest one are round-off: a deviation that nothing holds does not grow.
+NO_GROWTH = 1e-10
 
 #: Corrections before the pseudo-transient gives up.
 MOST_RELAX = 1000
@@ -134,15 +143,29 @@ def newton(system: System, z: np.ndarray, box: Box, most: int = MOST_NEWTON) -> 
     return Root(z, False, most)
 
 
-def _correction(jacobian: np.ndarray, residual: np.ndarray) -> np.ndarray | None:
+def _correction(jacobian: Matrix, residual: np.ndarray) -> np.ndarray | None:
     """The Newton step, or None where there is none."""
-    if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
+    if not (np.isfinite(residual).all() and _finite(jacobian)):
         return None
     try:
-        d = np.linalg.solve(jacobian, -residual)
+        d = _solve(jacobian, -residual)
     except np.linalg.LinAlgError:
         return None
     return d if np.isfinite(d).all() else None
+
+
+def _solve(matrix: Matrix, right: Any) -> Any:
+    """x of matrix x = right. Raises LinAlgError where there is none."""
+    if not sparse.issparse(matrix):
+        return np.linalg.solve(matrix, right)
+    try:
+        return splu(matrix).solve(right.toarray() if sparse.issparse(right) else right)
+    except RuntimeError as error:  # exactly singular
+        raise np.linalg.LinAlgError(str(error)) from None
+
+
+def _finite(matrix: Matrix) -> bool:
+    return bool(np.isfinite(matrix.data if sparse.issparse(matrix) else matrix).all())
 
 
 def homotopy(at: Callable[[float], System], z: np.ndarray, box: Box) -> Root:
@@ -203,43 +226,65 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int) -> Root:
     return Root(z, False, taken)
 
 
-def reduce_jacobian(jacobian: np.ndarray, n: int) -> np.ndarray:
+def reduce_jacobian(jacobian: Matrix, n: int) -> Matrix:
     """Jacobian of the first n residuals in the first n unknowns where the others keep theirs at zero; NaN if none.
 
     Args:
         jacobian: of all residuals in all unknowns (m, m)
         n: how many come first
     """
-    if len(jacobian) == n:
+    if jacobian.shape[0] == n:
         return jacobian
     try:
-        answer = np.linalg.solve(jacobian[n:, n:], jacobian[n:, :n])
+        answer = _solve(jacobian[n:, n:], jacobian[n:, :n])
     except np.linalg.LinAlgError:
         return np.full((n, n), np.nan)
-    whole: np.ndarray = jacobian[:n, :n] - jacobian[:n, n:] @ answer
-    return whole
+    if sparse.issparse(jacobian):
+        answer = sparse.csc_matrix(answer)
+    return jacobian[:n, :n] - jacobian[:n, n:] @ answer
 
 
-def growth(jacobian: np.ndarray) -> float:
+def growth(jacobian: Matrix) -> float:
     """Rate [1/s] at which a small deviation grows fastest; none below round-off."""
+    if sparse.issparse(jacobian):
+        if _dominant(jacobian):
+            return 0.0
+        jacobian = jacobian.toarray()
     if not jacobian.size or not np.isfinite(jacobian).all():
         return 0.0
     values = np.linalg.eigvals(jacobian)
     rate = float(values.real.max())
-    return rate if rate > 1e-10 * float(np.abs(values).max()) else 0.0
+    return rate if rate > NO_GROWTH * float(np.abs(values).max()) else 0.0
 
 
-def stable(jacobian: np.ndarray) -> bool:
+def _dominant(jacobian: Matrix) -> bool:
+    """Whether there are scales in which every diagonal entry outweighs its row: then all deviations decay.
+
+    They solve the system of the diagonal and of the magnitudes beside it, and are positive then and only then (an
+    M-matrix: Berman and Plemmons 1994, chapter 6). It costs one sparse elimination where eigenvalues cost n^3.
+    """
+    own = jacobian.diagonal()
+    beside = abs(jacobian - sparse.diags(own))
+    held = sparse.diags(own - NO_GROWTH * np.abs(own).max(initial=0.0))
+    try:
+        scales = _solve((held + beside).tocsc(), -np.ones(len(own)))
+    except np.linalg.LinAlgError:
+        return False
+    return bool((own < 0).all() and np.isfinite(scales).all() and (scales > 0).all())
+
+
+def stable(jacobian: Matrix) -> bool:
     """Whether a machine stays at an equilibrium of this (reduced) Jacobian."""
-    return bool(np.isfinite(jacobian).all()) and growth(jacobian) == 0.0
+    return _finite(jacobian) and growth(jacobian) == 0.0
 
 
 def _euler(system: System, before: np.ndarray, step: float, n: int) -> System:
     """The equations of one implicit Euler step."""
-    mass = np.diag(np.arange(len(before)) < n) / step
+    mass = (np.arange(len(before)) < n) / step
 
-    def equations(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def equations(z: np.ndarray) -> tuple[np.ndarray, Matrix]:
         rate, jacobian = system(z)
-        return mass @ (z - before) - rate, mass - jacobian
+        whole = sparse.diags(mass, format="csc") if sparse.issparse(jacobian) else np.diag(mass)
+        return mass * (z - before) - rate, whole - jacobian
 
     return equations

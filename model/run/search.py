@@ -198,7 +198,7 @@ class Search:
         here = self.point(f)
         if not root.found or (np.abs(self.aims(found, f) - goal) > MET * self.size).any() or not self.allowed(here.p):
             return None
-        jacobian = rates(self.flat)(found.x, found.z, here.u, here.p)[1].reshape(self.n, self.n)
+        jacobian = rates(self.flat)(found.x, found.z, here.u, here.p)[1]
         return (found, f) if stable(reduce_jacobian(jacobian, len(found.x))) else None
 
     def _split(self, z: np.ndarray) -> tuple[Equilibrium, np.ndarray]:

@@ -27,6 +27,10 @@ MOST_ROWS = 5e6
 #: Methods by name.
 METHODS = ("idas", "lsoda")
 
+#: (states, inputs and parameters at the beginning; times of the rows) -> states there, a column each; all expressions
+#: of the model, as `evaluate` finds them; supply and throughput of the run [J]. None where it does not get through.
+Through = Callable[[Point, np.ndarray], tuple[np.ndarray, dict[str, np.ndarray], np.ndarray] | None]
+
 
 def simulate(
     flat: FlatModel,
@@ -37,6 +41,7 @@ def simulate(
     times: Sequence[float] | np.ndarray | None = None,
     tolerance: float = 1e-8,
     method: str = "idas",
+    through: Through | None = None,
 ) -> Result:
     """Run a model through a duty.
 
@@ -50,6 +55,7 @@ def simulate(
         tolerance: of the local error, relative to each state's nominal and its distance from the start
         method: "idas" (SUNDIALS BDF for differential-algebraic systems, through CasADi) or "lsoda" (SciPy, one Python
             call per right-hand side)
+        through: an integration of one's own, to the same tolerance; the method says why where it does not get through
 
     Returns:
         all states, inputs and outputs, with the energy audit from integrated powers
@@ -64,14 +70,27 @@ def simulate(
     begin = point(flat, values, start, who="simulate", taken=schedule.values)
     stretches = _stretches(flat, schedule, begin.u)
     rows = _rows(schedule, stretches) if times is None else _pick_rows(np.asarray(times, dtype=float), stretches)
-    transient = Transient(flat, begin.x, begin.p, tolerance)
+    u = _inputs(stretches, rows)
+    if through is not None and (found := through(begin, rows.time)) is not None:
+        x, evaluated, energy = found
+        last = x[:, -1]
+    else:
+        transient = Transient(flat, begin.x, begin.p, tolerance)
+        x, z, last, energy = _integrate(transient, begin, stretches, rows, method)
+        evaluated = evaluate(flat, x, u, begin.p, z)
+    return _result(flat, rows.time, x, u, evaluated, begin, last, energy, tolerance)
+
+
+def _integrate(
+    transient: Transient, begin: Point, stretches: Sequence[Stretch], rows: _Rows, method: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """States and algebraic variables at the rows, the states at the end, supply and throughput [J]."""
+    flat = transient.flat
     run: Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]] = getattr(transient, method)
-    x = np.empty((len(flat.states), len(rows.time)))
-    z = np.empty((len(flat.algebraic), len(rows.time)))
-    u = np.empty((len(flat.inputs), len(rows.time)))
+    x, z = (np.empty((len(group), len(rows.time))) for group in (flat.states, flat.algebraic))
     now, energy = begin.x, np.zeros(2)
-    for k, stretch in enumerate(stretches):
-        here = np.flatnonzero(rows.stretch == k)
+    first = np.searchsorted(rows.stretch, np.arange(len(stretches) + 1))
+    for stretch, here in zip(stretches, map(slice, first, first[1:]), strict=False):
         grid = _merge_times(stretch.time, rows.time[here])
         try:
             path, algebraic, gained = run(stretch, grid, now)
@@ -82,9 +101,8 @@ def simulate(
         _check_ranges(flat, grid, path)
         shown = _nearest(grid, rows.time[here])
         x[:, here], z[:, here] = path[:, shown], algebraic[:, shown]
-        u[:, here] = stretch.inputs(rows.time[here])
         now, energy = path[:, -1], energy + gained
-    return _result(flat, rows.time, x, z, u, begin, now, energy, tolerance)
+    return x, z, now, energy
 
 
 @dataclass(frozen=True)
@@ -123,13 +141,21 @@ def _stretches(flat: FlatModel, schedule: Schedule, u: np.ndarray) -> list[Stret
     """The duty between jumps, with constant inputs filled in."""
     columns = [schedule.values.get(q.name, np.full(len(schedule.time), u[i])) for i, q in enumerate(flat.inputs)]
     table = np.array(columns).reshape(len(flat.inputs), len(schedule.time))
-    found = []
-    for part in schedule.stretches():
-        time, first = np.unique(schedule.time[part], return_index=True)
-        found.append(Stretch(time, table[:, part][:, first]))
+    found = [Stretch(schedule.time[part], table[:, part]) for part in schedule.stretches()]
     if not found:
         raise ScenarioError(f"simulate: the duty lasts no time (it stays at {schedule.start:g} s). Give it a duration.")
     return found
+
+
+def _inputs(stretches: Sequence[Stretch], rows: _Rows) -> np.ndarray:
+    """Inputs at the rows, a column each."""
+    time, table = np.concatenate([s.time for s in stretches]), np.hstack([s.table for s in stretches])
+    first = np.cumsum([0, *(len(s.time) for s in stretches)])
+    here = np.searchsorted(time, rows.time, side="right") - 1
+    here = np.clip(here, first[rows.stretch], first[rows.stretch + 1] - 2)
+    slope = (table[:, here + 1] - table[:, here]) / (time[here + 1] - time[here])
+    inside: np.ndarray = table[:, here] + slope * (rows.time - time[here])
+    return np.where(rows.time == time[here + 1], table[:, here + 1], inside)
 
 
 def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
@@ -142,7 +168,7 @@ def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
     every = np.arange(schedule.start, schedule.stop, OUTPUT_STEP)
     times = []
     for s in stretches:
-        inside = every[(every > s.begin) & (every < s.end)]
+        inside = every[slice(*np.searchsorted(every, (s.begin, s.end)))]
         times.append(_merge_times(np.array([s.begin, s.end]), inside))
     owners = [np.full(len(t), k) for k, t in enumerate(times)]
     return _Rows(np.concatenate(times), np.concatenate(owners))
@@ -176,14 +202,13 @@ def _result(
     flat: FlatModel,
     time: np.ndarray,
     x: np.ndarray,
-    z: np.ndarray,
     u: np.ndarray,
+    evaluated: dict[str, np.ndarray],
     begin: Point,
     last: np.ndarray,
     energy: np.ndarray,
     tolerance: float,
 ) -> Result:
-    evaluated = evaluate(flat, x, u, begin.p, z)
     stored = _make_energy(flat)
     ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
     held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))

@@ -7,19 +7,23 @@ from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
+from scipy.sparse import csc_matrix, issparse
 
 from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..units import text
 from .algebra import algebra
 from .fast import Fast, once
-from .newton import STRIDE, Box, Root, System, homotopy, newton, pseudo_transient, reduce_jacobian, stable
+from .newton import STRIDE, Box, Matrix, Root, System, homotopy, newton, pseudo_transient, reduce_jacobian, stable
 from .point import Point, point
 from .result import Audit, Result
 from .rows import evaluate, result
 
 #: Places between a start and an equilibrium that are looked at.
 BETWEEN = (0.0, 0.25, 0.5, 0.75)
+
+#: Unknowns up to which a Jacobian is an array: below, sparse elimination takes longer than a dense one.
+DENSE = 150
 
 #: Inputs named in a message.
 SHOWN = 6
@@ -155,11 +159,31 @@ def equilibrium(
     raise SolveError(f"{who}: {search.problem(tuple(named))}")
 
 
+class Rates:
+    """(x, z, u, p) -> derivatives and algebraic residuals, and their Jacobian in x and z, sparse where it is large.
+
+    Args:
+        flat: the model
+    """
+
+    def __init__(self, flat: FlatModel) -> None:
+        equations = ca.vertcat(flat.ode, flat.residual)
+        jacobian = ca.jacobian(equations, ca.vertcat(flat.x, flat.z))
+        entries = ca.vertcat(ca.SX(0, 1), *jacobian.nonzeros())
+        self._values = Fast("rates", flat.point, [equations, entries])
+        self._row, self._first, self.n = jacobian.row(), jacobian.colind(), jacobian.shape[0]
+
+    def __call__(self, *values: np.ndarray) -> tuple[np.ndarray, Matrix]:
+        """Both at some values."""
+        rate, entries = self._values(*values)
+        matrix = csc_matrix((entries.ravel(), self._row, self._first), (self.n, self.n))
+        return rate.ravel(), matrix if self.n > DENSE else matrix.toarray()
+
+
 @once
-def rates(flat: FlatModel) -> Fast:
-    """Compiled (x, z, u, p) -> derivatives and algebraic residuals, and their Jacobian in x and z."""
-    equations = ca.vertcat(flat.ode, flat.residual)
-    return Fast("rates", flat.point, [equations, ca.jacobian(equations, ca.vertcat(flat.x, flat.z))])
+def rates(flat: FlatModel) -> Rates:
+    """The rates of a model, made once."""
+    return Rates(flat)
 
 
 def unknowns_box(flat: FlatModel) -> Box:
@@ -186,11 +210,7 @@ class _Search:
         return self._at(self.here.u)
 
     def _at(self, u: np.ndarray) -> System:
-        def equations(w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            value, jacobian = self.rates(w[: self.n], w[self.n :], u, self.here.p)
-            return value, jacobian.reshape(len(w), len(w))
-
-        return equations
+        return lambda w: self.rates(w[: self.n], w[self.n :], u, self.here.p)
 
     def at(self, w: np.ndarray) -> Equilibrium:
         """Unknowns as an equilibrium."""
@@ -232,6 +252,7 @@ class _Search:
         """Why there is no equilibrium, in words."""
         flat, n = self.flat, self.n
         rate, jacobian = self.system(self.last)
+        jacobian = jacobian.toarray() if issparse(jacobian) else jacobian
         if (loose := self._loose(reduce_jacobian(jacobian, n))) is not None:
             return f"nothing holds {loose}: it keeps any value. Connect what drives or cools it, or give it a load."
         scale = self.box.scale[:n]

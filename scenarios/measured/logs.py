@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from importlib import import_module
+from itertools import chain, islice
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, cast
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from .card import Card
 from .checks import COLDEST, HOTTEST
 from .log_checks import check_log
 from .read import place_sensor
-from .sensors import SI, sensors_of
+from .sensors import SI, sensors_of, without_sign
 from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
@@ -47,6 +48,8 @@ SPIKE_SD = 12.0
 SPIKE_K = 8.0
 #: Share of temperatures that cannot be above which they have another unit.
 IMPOSSIBLE = 0.02
+#: Rows that are read at a time.
+BLOCK = 20_000
 #: Times what one sample in a thousand exceeds.
 SPIKE_TAIL = 2.5
 
@@ -129,6 +132,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     time, dated = _time(cells[time_column], time_column, path.name, lines, problems)
     values = {s.name: _values(cells[s.column], s, path.name, lines, problems) for s in sensors}
     raise_all(problems, path.name)
+    sensors, values = without_sign(scenario, sensors, values)
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
     values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)
@@ -137,7 +141,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
 
 
 def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
-    """Header, columns of cells, and the line of each row."""
+    """Header, columns of cells, and the line of each row; as numbers, block by block, where cells are nothing else."""
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path)
@@ -145,18 +149,40 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
             reader = csv.reader(file)
             header = [h.strip() for h in next(reader, [])]
             raise_all(header_problems(path.name, header), path.name)
-            rows = [(reader.line_num, row) for row in reader if any(row)]
+            lines: list[int] = []
+            parts: list[list[Sequence[Any]]] = [[] for _ in header]
+            rows = ((reader.line_num, row) for row in reader if any(row))
+            while block := list(islice(rows, BLOCK)):
+                if ragged := next((line for line, row in block if len(row) != len(header)), None):
+                    raise DataError(
+                        [f"{path.name} line {ragged}: has not {len(header)} cells as the header has. Mend the row."]
+                    )
+                lines += [line for line, _ in block]
+                for part, cells in zip(parts, zip(*(row for _, row in block), strict=True), strict=True):
+                    part.append(_compact(cells))
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
     except (OSError, EOFError, UnicodeDecodeError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
-    ragged = [line for line, row in rows if len(row) != len(header)]
-    if ragged:
-        raise DataError([f"{path.name} line {ragged[0]}: has not {len(header)} cells as the header has. Mend the row."])
-    if not rows:
+    if not lines:
         raise DataError([f"{path.name}: holds no samples."])
-    columns: dict[str, Sequence[Any]] = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
-    return header, columns, np.array([line for line, _ in rows])
+    return header, dict(zip(header, map(_join, parts), strict=True)), np.array(lines)
+
+
+def _compact(cells: Sequence[str]) -> Sequence[Any]:
+    """Cells as an array of numbers, NaN where one is empty; as they are where one is anything else."""
+    try:
+        found = np.fromiter((float(cell) if cell else math.nan for cell in cells), float, len(cells))
+    except ValueError:
+        return cells
+    return cast(Sequence[Any], found) if np.isfinite(found).sum() + cells.count("") == len(cells) else cells
+
+
+def _join(parts: Sequence[Sequence[Any]]) -> Sequence[Any]:
+    """Blocks of a column as one, an array where all of them are."""
+    if all(isinstance(part, np.ndarray) for part in parts):
+        return cast(Sequence[Any], np.concatenate(parts))
+    return list(chain.from_iterable(parts))
 
 
 def _open(path: Path) -> IO[str]:
@@ -184,8 +210,9 @@ def _number(cell: Any) -> float:
 
 def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, problems: Problems) -> np.ndarray:
     """A column in SI (n,), NaN where a cell is empty."""
-    found = np.full(len(cells), np.nan)
-    for k, cell in enumerate(cells):
+    whole = isinstance(cells, np.ndarray)
+    found = np.array(cells) if whole else np.full(len(cells), np.nan)
+    for k, cell in enumerate([] if whole else cells):
         try:
             found[k] = _number(cell)
         except (TypeError, ValueError):
@@ -250,7 +277,12 @@ def _stretches(
     """Stretch of each row (n,), and the step [s]: a new segment, a gap or another step begins a stretch."""
     if len(time) < 3:
         raise DataError([f"{name}: holds {len(time)} samples. Give at least three."])
-    other = np.array([a != b for a, b in zip(segments[1:], segments[:-1], strict=True)]) if segments else False
+    named = (
+        np.zeros(len(time))
+        if segments is None
+        else np.asarray(segments, None if isinstance(segments, np.ndarray) else str)
+    )
+    other = np.diff(np.unique(named, return_inverse=True)[1]) != 0
     steps = np.diff(time)
     if len(back := np.flatnonzero((steps <= 0) & ~other)):
         raise DataError([f"{name} line {lines[back[0] + 1]}: time does not go on. Sort the samples by time."])

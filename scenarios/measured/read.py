@@ -20,7 +20,18 @@ from .card import Card
 from .checks import check
 from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
-from .sensors import CONTEXT, DIRECTIONS, SI, Cells, contradictions, drive_by, floats, order_warnings, sensors_of
+from .sensors import (
+    CONTEXT,
+    DIRECTIONS,
+    SI,
+    Cells,
+    contradictions,
+    drive_by,
+    floats,
+    order_warnings,
+    sensors_of,
+    without_sign,
+)
 from .table import Campaign, Sensor
 
 #: Share of the tests that must have run alike, for one that lacks a row to be taken to have run like them.
@@ -100,6 +111,7 @@ class _Reader:
         self.problems += oil_problems(self.path.name, oils, self.card)
         raise_all(self.problems, self.path.name)
         values = {s.name: self._values(table, s) for s in self.sensors}
+        self.sensors, values = without_sign(self.scenario, self.sensors, values)
         minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
         raise_all(self.problems, self.path.name)
         found = self._ordered(cells, values, minutes)
@@ -189,7 +201,7 @@ class _Reader:
         for sensor in (s for s in self.sensors if s.role == "given" and s.kind == "torque" and s.signs == (1.0, 1.0)):
             torque = values[sensor.name]
             if (torque < 0).any() and (torque > 0).any():
-                usual = np.sign(self.scenario.operating_point.get(sensor.reads, 1.0)) or 1.0
+                usual = np.sign(Nominal(self.scenario).value(sensor.reads)) or 1.0
                 return np.asarray(np.sign(torque) * usual)
         return np.zeros(cells.n)
 

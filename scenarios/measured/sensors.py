@@ -152,7 +152,7 @@ class _Sensors:
         """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
         named = [i.reads for i in self.found.values() if i.role == "given"]
         protocol = self.scenario.protocol
-        usual = self.scenario.driven_by(protocol.inputs if protocol else ())
+        usual = self.scenario.driven_by(protocol.inputs if protocol else ()).driven_by_torques()
         driven = usual.driven_by(named)
         self.driven = driven.driven_paths()
         shafts = self.scenario.shaft_paths()
@@ -286,6 +286,26 @@ class _Sensors:
 def _round(value: float, unit: str) -> float:
     """A value with two digits in the unit that a person reads."""
     return to_si(text(value, unit, 2), unit)
+
+
+def without_sign(
+    scenario: Scenario, sensors: Sequence[Sensor], values: dict[str, np.ndarray]
+) -> tuple[tuple[Sensor, ...], dict[str, np.ndarray]]:
+    """Sensors and values (n,), given torques of one sign as magnitudes where the rig says at which end power enters.
+
+    Args:
+        scenario: the rig
+        sensors: of the table
+        values: sensor -> column in SI
+    """
+    columns = {s.name: values[s.name] for s in sensors if s.role == "given" and s.kind == "torque"}
+    loads = [name for name, column in columns.items() if not ((column < 0).any() and (column > 0).any())]
+    if not (scenario.drives and loads):
+        return tuple(sensors), values
+    usual = Nominal(scenario)
+    ways = {s.name: -1.0 if usual.value(s.reads) < 0 else 1.0 for s in sensors if s.name in loads}
+    signed = (replace(s, signs=(ways[s.name], -ways[s.name])) if s.name in ways else s for s in sensors)
+    return tuple(signed), values | {name: np.abs(columns[name]) for name in ways}
 
 
 def drive_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:

@@ -138,7 +138,7 @@ class Machine:
     def _state(self, point: tuple[float, float, float], changed: Change) -> Mapping[str, float]:
         """Everything at a point; raises `ArithmeticError` where the machine cannot be run."""
         n, load_, room = point
-        given = {"input.w": n * self.nominal.value("input.w"), "output.tau": load_ * self.nominal.value("output.tau")}
+        given = {"input.w": n * self.nominal.value("input.w"), "output.load": load_ * self.nominal.value("output.load")}
         course = _course(point)
         true = {
             name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ course))

@@ -106,7 +106,7 @@ def write_campaign(folder: Path, rig: Path, fault: str, seed: int) -> Path:
     columns: dict[str, list[float]] = {s.column: [] for s in sensors}
     points = [(n, load_, room) for room in ROOMS for n in SPEEDS for load_ in LOADS]
     for speed, share, room in [points[k] for k in rng.permutation(len(points))]:
-        given = {"input.w": speed * nominal.value("input.w"), "output.tau": share * nominal.value("output.tau")}
+        given = {"input.w": speed * nominal.value("input.w"), "output.load": share * nominal.value("output.load")}
         given["room.T"] = room + 273.15
         state = nominal.at(given | wrong)
         assert state is not None

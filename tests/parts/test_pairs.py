@@ -104,7 +104,7 @@ def test_a_good_bevel_pair_loses_half_a_percent_or_so(angle, spiral):
         ("BevelGearPair", BEVEL | dict(m_n=4.5e-3), "m_et fits m_n"),
         ("BevelGearPair", BEVEL | dict(x_2=0.4), "a_w fits"),
         ("InternalGearPair", RING | dict(z_2=40.0, a_w=4.1e-3), "the ring is larger than the pinion"),
-        ("InternalGearPair", RING | dict(x_1=0.5), "a_w fits"),
+        ("InternalGearPair", RING | dict(x_1=0.5), "mm fits these teeth"),
     ],
 )
 def test_what_does_not_fit_is_refused_by_name(kind, values, words):

@@ -8,11 +8,13 @@ import pytest
 from gearheat.model.core.component import Equation, equation
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import ScenarioError, SolveError
+from gearheat.model.run.newton import stable
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady, steady_table
 from hypothesis import given, settings, strategies as st
 from scipy.optimize import brentq
+from scipy.sparse import csc_matrix
 from small_parts import (
     SIGMA,
     Ambient,
@@ -206,3 +208,28 @@ def test_wrong_names() -> None:
     assert len(caught.value.problems) == 3
     with pytest.raises(SolveError, match="no point"):
         steady_table(rc(), [])
+
+
+def test_a_large_network_is_solved_sparse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rod that is heated at one end and cooled along its length: T - T_room falls as a cosh."""
+    n = 160
+    parts = [Ambient("room"), *(Body(f"m{k}", C=1e3) for k in range(n))]
+    parts += [*(Conductor(f"g{k}", G=10.0) for k in range(n - 1)), *(Conductor(f"c{k}", G=1e-4) for k in range(n))]
+    nets = [("room.heat", *(f"c{k}.b" for k in range(n)))]
+    nets += [(f"m{k}.heat", f"c{k}.a", *([f"g{k}.a"] * (k < n - 1)), *([f"g{k - 1}.b"] * (k > 0))) for k in range(n)]
+    flat = model(*parts, nets=nets)
+    hot = steady(flat, {"m0.Q": 5.0})
+    rise = np.array([hot[f"m{k}.T"][0] for k in range(n)]) - 300.0
+    mu = np.arccosh(1 + 1e-4 / 10.0 / 2)
+    assert rise / rise[-1] == pytest.approx(np.cosh(mu * (n - 0.5 - np.arange(n))) / np.cosh(mu / 2), rel=1e-7)
+    assert 1e-4 * rise.sum() == pytest.approx(5.0, rel=1e-7)
+    with pytest.raises(SolveError, match="nothing holds"):
+        steady(flat, {"m0.Q": 5.0, **{f"c{k}.G": 0.0 for k in range(n)}})
+
+
+def test_a_deviation_decays_where_the_diagonal_outweighs_the_rows_in_some_scales() -> None:
+    decays = csc_matrix(np.array([[-1.0, 2.0], [0.25, -1.0]]))
+    grows = csc_matrix(np.array([[-1.0, 2.0], [0.6, -1.0]]))
+    swings = csc_matrix(np.array([[-1.0, 9.0], [-9.0, -1.0]]))  # decays, though no scales tell
+    assert stable(decays) and not stable(grows) and stable(swings)
+    assert not stable(csc_matrix(np.array([[np.nan, 0.0], [0.0, -1.0]])))

@@ -20,7 +20,7 @@ FACE = 'b = "42 mm"'
     [
         # values
         (FACE, "b = 42", GEARS + ': b = 42 has no unit. Write "42 m" (expected a unit like m).'),
-        (FACE, 'b = "42"', GEARS + ': b = "42" has no unit. Write "42 m" (expected a unit like m).'),
+        (FACE, 'b = "42"', GEARS + ': b = "42" has no unit. Write "42 mm" or "42 m" (expected a unit like m).'),
         (FACE, 'b = "42 kg"', GEARS + ': b = "42 kg": unit "kg" does not fit m. Write for example "62 mm".'),
         (FACE, 'b = "42 mn"', GEARS + ': b = "42 mn": unit "mn" does not fit m. Write for example "62 mm".'),
         (FACE, 'b = "wide"', GEARS + ': b = "wide" is no number with a unit. Write for example "62 mm".'),
@@ -314,6 +314,7 @@ def test_the_file_beside_is_suggested(tmp_path: Path, monkeypatch: pytest.Monkey
     ("name", "expected"),
     [
         ("planetry", 'there is no rig "planetry" and no such file. Did you mean "planetary"? Shipped rigs: '),
+        (RIGS / "planetary" / "publised.toml", 'published.toml" or '),
         ("no/such.toml", "no/such.toml: there is no such file. Check the path."),
     ],
 )

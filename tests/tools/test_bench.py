@@ -2,6 +2,9 @@ from __future__ import annotations
 
 import json
 
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.tools.bench import scale
 from gearheat.tools.bench.bench import _imports, _integration
 from gearheat.tools.bench.uncertainty import measure
 
@@ -32,3 +35,20 @@ def test_standard_deviations_stand_beside_draws():
 def test_too_few_draws_are_refused(gearheat):
     answer = gearheat("bench", "cycloidal_areas", "--uncertainty", "--draws", 2)
     assert answer.code == 2 and "--draws 2" in answer.err and "at least 10" in answer.err
+
+
+def test_time_and_memory_of_what_grows_are_those_of_processes(tmp_path, monkeypatch):
+    monkeypatch.setitem(scale.TABLES, "scale", [{**scale.TABLES["scale"][0], "sizes": [5, 100]}])
+    (job,) = scale.measure()["jobs"]
+    small, large = job["runs"]
+    assert 0.1 < small["s"] < large["s"] and 0.03 < small["GiB"] < 2
+    assert 0 < job["exponents"]["s"] < 1
+    assert [row[:2] for row in scale.rows_of({"jobs": [job]})] == [(job["what"], 5), (job["what"], 100)]
+    with pytest.raises(DataError, match=r"steady given\.toml.*no such file"):
+        scale._run(["steady", "given.toml"], tmp_path)
+
+
+@pytest.mark.parametrize("made", ["duty", "wind"])
+def test_what_a_command_reads_has_the_size_that_is_asked(tmp_path, made):
+    scale.MADE[made](tmp_path, 30)
+    assert len((tmp_path / "given.csv").read_text().splitlines()) == 31

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from gearheat.tools.build.machines import HEAD, MACHINES, WARM, draw_up, usual
+from gearheat.tools.build.machines import HEAD, draw_up
+from gearheat.tools.build.plausible import MACHINES, WARM, usual
 from gearheat.tools.docs.blocks import PAGES
 
 ROWS = [

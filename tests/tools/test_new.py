@@ -63,8 +63,7 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
     scenario = load(path)
     assert all(source for source in scenario.value_sources.values())
     assert found["assumed"] > 50
-    turned = 1 if name == "planetary" else (-1) ** len(found["stages"])  # external pairs turn the sense each time
-    assert math.copysign(1, scenario.operating_point["output.tau"]) == -turned
+    assert scenario.drives == "input" and scenario.operating_point["output.load"] > 0
     assert flat_of(scenario).states
 
 
@@ -81,6 +80,7 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     answer = gearheat("new", "hot", *plate, "-o", tmp_path / "hot.toml")
     assert answer.code == 0, answer.err
     assert "needs --fan or --cooler, fins, or a larger housing" in answer.err
+    assert "the largest loss is that of teeth" in answer.err and "for worms PAG" in answer.err
     plate = ("--stages", "helical,helical", "--ratio", 20, "--power", "400 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "weak", *plate, "--bearings", "ball", "-o", tmp_path / "weak.toml")
     assert answer.code == 0, answer.err
@@ -158,7 +158,7 @@ def test_oil_side_coefficients_are_near_those_of_constants(made, gearheat, name)
     path, _ = made(name)
     turning, rest = (
         gearheat("steady", path, *still, "--json", "-").json["values"]
-        for still in ((), ("--set", "input.w=1e-3 rpm", "--set", "output.tau=0 N.m"))
+        for still in ((), ("--set", "input.w=1e-3 rpm", "--set", "output.load=0 N.m"))
     )
     assert 80 < turning["oil_wall.h"] < 400
     assert 50 < turning["oil_gears_1.h"] < 1000
@@ -262,6 +262,12 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--stages", "worm"), "expected 7 to 60"),
         (("--stages", "helical,planetary"), "a planetary stage stands alone"),
         (("--speed", "0 rpm"), "must be above 0"),
+        (("--power", "22"), '--power = "22" has no unit. Write "22 kW" or "22 W"'),
+        (("--power", "2,2 kW"), 'has a decimal comma. Write "2.2 kW"'),
+        (("--ratio", "3,15"), 'has a decimal comma. Write "3.15"'),
+        (("--housing", "100x90x80 mm"), "is too small for the gears: expected"),
+        (("--housing", "-1 m2"), "is no size"),
+        (("--oil-volume", "90 l"), "which reaches the axes"),
     ],
 )
 def test_name_plates_that_are_wrong(gearheat, tmp_path, options, words):
@@ -335,6 +341,20 @@ def test_a_fan_and_a_cooler_cool(gearheat, tmp_path):
     }
     assert oil[()] > oil[("--fan",)] + 10
     assert 40 < oil[("--cooler",)] < 75
+
+
+def test_a_data_sheet_takes_the_place_of_the_rules(gearheat, tmp_path):
+    plate = ("--stages", "helical,helical", "--ratio", 12.56, "--power", "7.5 kW", "--speed", "1450 rpm", "--json", "-")
+    sheet = ("--centre-distance", "140 mm", "--housing", "520x260x350 mm", "--oil-volume", "7 l")
+    answer = gearheat("new", "a", *plate, *sheet, "-o", tmp_path / "a.toml")
+    assert answer.code == 0, answer.err
+    parts = {part.name: part.values for part in load(tmp_path / "a.toml").spec.parts}
+    assert parts["stage_2"]["a_w"] == pytest.approx(0.140)
+    assert [parts["cooling"][key] for key in ("length", "width", "height")] == pytest.approx([0.52, 0.26, 0.35])
+    assert parts["oil"]["V"] == pytest.approx(7e-3)
+    assert answer.json["usual"]["efficiency_pct"][0] < 100 * answer.json["efficiency"]
+    assert sum(answer.json["losses_W"].values()) == pytest.approx(answer.json["loss_W"], rel=1e-6)
+    assert answer.json["no_load_W"] < answer.json["loss_W"]
 
 
 def test_a_file_that_is_there_stays(gearheat, tmp_path):

@@ -2,8 +2,13 @@ from __future__ import annotations
 
 import csv
 
+import numpy as np
 import pytest
+from gearheat.model.run.schedule import Schedule
+from gearheat.model.run.simulate import simulate
+from gearheat.tools.solve.simulate import compiled
 from pages import problems_of
+from small_parts import gear
 
 DUTY = """time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]
 0,150,2000,20
@@ -111,3 +116,15 @@ def test_a_duty_says_how_the_rig_is_driven(gearheat, duty, tmp_path):
     ).json
     assert theirs["final"]["carrier.w"] == pytest.approx(150.0)
     assert theirs["final"]["oil.T"] == pytest.approx(ours["final"]["oil.T"], abs=1e-4)
+
+
+def test_a_long_duty_through_compiled_code_is_that_of_idas():
+    flat = gear()
+    time = 60 * np.repeat(np.arange(30.0), 2)[1:-1]
+    given = np.random.default_rng(0).uniform(-100.0, 100.0, (2, len(time)))
+    schedule = Schedule(time, dict(zip(("drive.w", "load.tau"), given, strict=True)))
+    exact, fast = simulate(flat, schedule), simulate(flat, schedule, through=compiled(flat, schedule))
+    assert (fast.index == exact.index).all()
+    for name, column in exact.columns.items():
+        assert fast.columns[name] == pytest.approx(column, rel=1e-6, abs=1e-4), name
+    assert fast.laws == exact.laws and fast.audit.residual < 1e-6

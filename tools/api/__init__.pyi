@@ -26,6 +26,7 @@ from .tools.export.export import export as export, play as play
 from .tools.export.fmu import Exported as Exported
 from .tools.films.film import FilmTable as FilmTable, film as film
 from .tools.films.teeth import TeethFelt as TeethFelt, teeth as teeth
+from .tools.page.page import Page as Page, page as page
 from .tools.rating.rate import MethodRating as MethodRating, rate_by_method as rate_by_method
 from .tools.solve.design import DesignAnswer as DesignAnswer, design as design
 from .tools.solve.losses import LossTable as LossTable, losses as losses

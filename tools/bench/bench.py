@@ -26,9 +26,9 @@ from ...scenarios.measured.study import read_study
 from ..compare import campaign
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
-from . import contact, fmu as bench_fmu, throughput, uncertainty as bench_uncertainty
+from . import contact, fmu as bench_fmu, scale, throughput, uncertainty as bench_uncertainty
 from .costs import rhs_s
-from .harness import rows, timed
+from .harness import PROGRAM, rows, timed
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
 TOLERANCES = (1e-6, 1e-8, 1e-9)
@@ -38,9 +38,6 @@ REFERENCE = 1e-10
 
 #: Communication step of the FMU [s].
 STEP = 60.0
-
-#: The program as a process of its own.
-PROGRAM = (sys.executable, "-m", "gearheat.tools.cli")
 
 #: How often the memory of the whole job is looked at [s].
 EVERY = 0.02
@@ -54,7 +51,8 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         tests: of the main job
         json: file of the JSON object, "-" for stdout
         what: "job", the main job; "fmu", the FMU against its peers, and the batch; "batch" alone; "uncertainty", the
-            FMU's standard deviations beside those of rows that are drawn; "contact", the contact solver
+            FMU's standard deviations beside those of rows that are drawn; "contact", the contact solver; "scale", how
+            time and memory grow
         draws: rows that are drawn
     """
     measures: dict[str, tuple[Callable[[], dict[str, Any]], Callable[[dict[str, Any]], None]]] = {
@@ -63,6 +61,7 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         "batch": (lambda: _batch(rig), _print_batch),
         "uncertainty": (lambda: bench_uncertainty.measure(rig, draws), _print_uncertainty),
         "contact": (contact.measure, _print_contact),
+        "scale": (scale.measure, _print_scale),
     }
     measure, show = measures[what]
     found = {"schema": "gearheat.bench/1", **measure()}
@@ -249,6 +248,10 @@ def _print_batch(found: dict[str, Any]) -> None:
 def _print_contact(found: dict[str, Any]) -> None:
     title = "The contact solver and slippy, processor times of one core"
     table(title, ("what", "value"), rows("contact", found))
+
+
+def _print_scale(found: dict[str, Any]) -> None:
+    table("What grows, each row a process of its own", scale.HEAD, scale.rows_of(found), wrapped=True)
 
 
 def _print_uncertainty(found: dict[str, Any]) -> None:

@@ -20,6 +20,9 @@ T = TypeVar("T")
 #: Goals and peers.
 TABLES: dict[str, Any] = tables("tools.bench", "bench.toml")
 
+#: The program as a process of its own.
+PROGRAM = (sys.executable, "-m", "gearheat.tools.cli")
+
 _TEMPLATES = Environment(
     loader=PackageLoader("gearheat.tools.bench"), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
 )

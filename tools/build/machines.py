@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ...model.files import tables
 from .new import new
+from .plausible import MACHINES, WARM, usual
 
-#: Name plates, and the efficiencies that units of their kinds have.
-MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
-#: Oil that seals and oil stand for long [degC].
-WARM = (20.0, 100.0)
 HEAD = ("stages", "i", "kW", "rpm", "ISO VG", "", "efficiency [%]", "usual [%]", "oil [degC]", "bearings")
 
 
@@ -34,16 +30,6 @@ def draw_up(plate: str) -> Mapping[str, Any]:
     named = (stages, ratio, power, speed, grade, ", ".join(options))
     cells = (*named, f"{eta:.2f}", f"{low:g} to {high:g}", f"{oil:.0f}", f"{first} to {last}")
     return {"cells": cells, "plausible": low <= eta <= high and WARM[0] < oil < WARM[1]}
-
-
-def usual(stages: str, kW: float, ratio: float) -> tuple[float, float]:
-    """Efficiencies [%] of units of such stages, power and ratio."""
-    kinds, known = stages.split(","), MACHINES["efficiency"]
-    if kinds == ["worm"]:
-        low, high = next(band for most, band in MACHINES["worm"].items() if ratio <= float(most))
-    else:
-        low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
-    return (low if kW >= 1 else low - known["small"]), high
 
 
 def print_table() -> None:

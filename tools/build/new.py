@@ -6,7 +6,7 @@ import json
 import math
 import re
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,11 +21,12 @@ from ...scenarios.load import load as read_rig
 from ..describe.rig import Rig
 from ..show.console import writable, write
 from ..solve.settings import flat_of
-from ..solve.steady import conditions
+from ..solve.steady import SteadyState, conditions
 from . import sizing
-from .bearings import LIFE, LIGHT
-from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit
-from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, WormStage
+from .bearings import LIGHT
+from .plausible import WARM, notes, usual
+from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit, wanted_of
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Density of steel [kg/m3].
 STEEL = 7850.0
@@ -67,10 +68,6 @@ STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 #: Speed at which churning is stated, 200 rpm [rad/s].
 CHURNED = 200 * math.pi / 30
-#: Oil temperature that a unit should not reach [degC].
-HOT = 100.0
-#: Efficiency below which standard sizes do not fit the power.
-POOR = 0.4
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,6 +96,9 @@ def new(
     cooler: bool = False,
     base: str = "concrete",
     motor_heat: str | None = None,
+    centre_distance: str | None = None,
+    housing: str | None = None,
+    oil_volume: str | None = None,
     out: str | Path | None = None,
 ) -> NewRig:
     """A rig of your own from a name plate: it runs at once, and says the rule of every number.
@@ -116,6 +116,10 @@ def new(
         base: what its foot stands on, "concrete" or a "steel" frame; "flange" on a steel plate; "free" on rubber, or
             where it hangs on its shaft
         motor_heat: what comes by the flange of a motor that is bolted to it, such as "50 W"
+        centre_distance: of the last stage, spur, helical or worm, such as "160 mm"; by load if None
+        housing: length, width and height, such as "800x370x430 mm", or its area, such as "1.6 m2"; a box around the
+            gears if None
+        oil_volume: such as "20 l"; the level at which the smallest wheel dips if None
         out: file to write; none is left if None
 
     Raises:
@@ -129,7 +133,9 @@ def new(
     """
     words = stages.split(",") if isinstance(stages, str) else stages
     kinds = [kind.strip() for kind in words if kind.strip()]
-    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"), bearings)
+    wanted = wanted_of(centre_distance, housing, oil_volume)
+    plate = to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed")
+    made = unit(kinds, ratio, *plate, bearings, wanted)
     entry = _oil(oil)
     if base not in BASES:
         raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
@@ -144,17 +150,19 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler, motor=motor))
+        boxed = housing is not None
+        write(path, text(made, doc, speed, entry, base=base, fan=fan, cooler=cooler, motor=motor, boxed=boxed))
         try:
             scenario = read_rig(path)
             flat = flat_of(scenario)
-            rest = steady(flat, conditions(scenario, flat))
+            point = conditions(scenario, flat)
+            rest = SteadyState(scenario, flat, steady(flat, point), backward=False)
+            idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
         except GearheatError as error:
             path.unlink()
             why = error.problems[0]
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
-    kept = {key: float(rest[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
-    foot = float(rest["foot.Q_flow"][0]) if base != "free" else 0.0
+    foot = rest["foot.Q_flow"] if base != "free" else 0.0
     sizes = {
         "schema": "gearheat.new/1",
         "file": str(path),
@@ -162,25 +170,16 @@ def new(
         "stages": [{k: getattr(s, k) for k in (*STAGE_KEYS, SIZES[s.kind])} for s in made.stages],
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
-        "oil_degC": kept["oil.T"] - 273.15,
-        "loss_W": kept["efficiency.P_loss"],
-        "efficiency": kept["efficiency.eta"],
+        "oil_degC": rest["oil.T"] - 273.15,
+        "loss_W": rest["efficiency.P_loss"],
+        "no_load_W": float(idle[0]),
+        "losses_W": rest.losses_by_kind(),
+        "efficiency": rest["efficiency.eta"],
+        "usual": {"efficiency_pct": usual(kinds, rest["input.P"] / 1000, ratio), "oil_degC": WARM},
         "base": base,
-        "foot_share": foot / (kept["efficiency.P_loss"] + (motor or 0.0)),
+        "foot_share": foot / (rest["efficiency.P_loss"] + (motor or 0.0)),
     }
-    return NewRig(scenario, sizes, tuple(_notes(made, sizes)))
-
-
-def _notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
-    """What a user should know about a unit."""
-    if sizes["oil_degC"] > HOT:
-        yield f"the oil is hotter than {HOT:g} degC: such a unit needs --fan or --cooler, fins, or a larger housing."
-    if sizes["efficiency"] < POOR:
-        yield "most of the power is lost: standard modules and bearings are too large for it."
-    for shaft in made.shafts:
-        for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
-            if life < LIFE:
-                yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
+    return NewRig(scenario, sizes, tuple(notes(made, sizes)))
 
 
 def _oil(name: str) -> str:
@@ -193,7 +192,18 @@ def _oil(name: str) -> str:
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, cooler: bool, motor: float | None) -> str:
+def text(
+    made: Unit,
+    doc: str,
+    speed: str,
+    oil: str,
+    *,
+    base: str,
+    fan: bool,
+    cooler: bool,
+    motor: float | None,
+    boxed: bool = False,
+) -> str:
     """The rig file of a unit.
 
     Args:
@@ -205,18 +215,19 @@ def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, co
         fan: whether one is on the input shaft
         cooler: whether the oil has one
         motor: heat that comes by the flange of a motor [W], None without one
+        boxed: whether the housing is that of a data sheet
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
+    worm = isinstance(made.stages[0], WormStage)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
     values = {
         "doc": doc,
         "speed": speed,
         "efficiency": efficiency,
-        "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
+        "load": made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
-        "of_oil": catalogue("oil")[oil].values,
         "bath": sizing.bath(made),
-        "splash": sizing.splash(made),
+        "splash": sizing.splash(made) | {"r": "stage_1.r_1" if worm else _reach(made.stages[0], 0)},
         "below": sizing.BELOW,
         "reached": 100 * sizing.REACHED,
         "side": SIDE,
@@ -232,6 +243,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, *, base: str, fan: bool, co
         "cooler": _cooler(made, efficiency) if cooler else None,
         "foot": _foot(made, base),
         "motor": motor,
+        "boxed": boxed,
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
@@ -275,13 +287,18 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     return (
         found
         | shape
-        | {"r": s.reach, "m": s.m_n, "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
+        | {"r": _reach(s, k), "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
     )
+
+
+def _reach(s: Stage, k: int) -> str:
+    """Radius of what moves the oil: that of the wheel, or how far planets reach."""
+    return f"{_mm(s.reach)} mm" if isinstance(s, PlanetaryStage) else f"stage_{k + 1}.r_2"
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s = made.shafts[k]
-    radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
+    radii = [f"stage_{k}.r_2"] * (k > 0) + [f"stage_{k + 1}.r_1"] * (k < len(made.stages))
     places = [
         {
             "name": f"{names[k]}_bearing_{end}",

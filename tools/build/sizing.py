@@ -8,12 +8,13 @@ stands, what dips into it and what it wets.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...model.errors import ScenarioError
-from ...model.units import si_of
+from ...model.units import si_of, to_si
 from ...scenarios.entries import catalogue
 from .bearings import CHOICES, UNLOADED, choose, largest_bore
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
@@ -22,6 +23,10 @@ from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage,
 SHEAR = 25e6
 #: How much whole numbers of teeth may add to a ratio [1].
 ROUNDED = 1.05
+#: Kinds of stages of which a centre distance may be given.
+CENTRED = ("spur", "helical", "worm")
+#: Of the box around the gears, what is room between them and its walls [m].
+ROOM = (0.040, 0.050, 0.080)
 #: Kinds of stages that stand alone.
 ALONE = ("worm", "planetary")
 #: From the middle of a bearing to a gear [m].
@@ -65,8 +70,25 @@ class Shaft:
 
 
 @dataclass(frozen=True)
+class Wanted:
+    """What a data sheet says of a unit, None where it follows from the rules.
+
+    Args:
+        centre: centre distance of the last stage [m]
+        box: length, width and height of the housing [m]
+        area: of the housing [m2]
+        volume: of the oil [m3]
+    """
+
+    centre: float | None = None
+    box: tuple[float, ...] | None = None
+    area: float | None = None
+    volume: float | None = None
+
+
+@dataclass(frozen=True)
 class Unit:
-    """A gear unit: stages, shafts, and the box around them."""
+    """A gear unit: stages, shafts, the box around them, and the oil where a data sheet says it [m3]."""
 
     stages: tuple[Stage, ...]
     shafts: tuple[Shaft, ...]
@@ -74,6 +96,7 @@ class Unit:
     length: float
     width: float
     height: float
+    volume: float | None = None
 
     @property
     def ratio(self) -> float:
@@ -91,7 +114,14 @@ class Unit:
         return 2 * (self.length * self.width + self.length * self.height + self.width * self.height)
 
 
-def unit(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str = "auto") -> Unit:
+def unit(
+    kinds: Sequence[str],
+    ratio: float,
+    power: float,
+    speed: float,
+    bearings: str = "auto",
+    wanted: Wanted = Wanted(),
+) -> Unit:
     """A gear unit for a name plate.
 
     Args:
@@ -100,16 +130,20 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float, bearing
         power: at the input [W]
         speed: of the input [rad/s]
         bearings: "ball", "roller", or "auto" for rollers where balls do not last
+        wanted: what is known beside the name plate
 
     Raises:
         ScenarioError: unknown kinds, or more than so many stages of so much can do
     """
     _check(kinds, ratio, power, speed, bearings)
+    if wanted.centre and kinds[-1] not in CENTRED:
+        raise ScenarioError(f"a {kinds[-1]} stage has no --centre-distance to choose. Leave it out.")
     T, n, x = power / speed, speed / (2 * math.pi), SIDE
     found: list[Stage] = []
     left = ratio
     for k, kind in enumerate(kinds):
-        made = MAKE[kind](kind, _share(left, kinds[k:]), T, n, x)
+        centre = wanted.centre if k == len(kinds) - 1 else None
+        made = MAKE[kind](kind, _share(left, kinds[k:]), T, n, x, centre)
         found.append(made)
         T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
     span = x - GAP + SIDE
@@ -124,7 +158,35 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float, bearing
         length = height = 2 * found[0].reach + 8 * found[0].m_n + 0.040 + 2 * wall
     else:
         length += shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
-    return Unit(tuple(found), shafts, wall, length, span + 0.090, height)
+    drawn = Unit(tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume)
+    return _boxed(drawn, wanted)
+
+
+def _boxed(made: Unit, wanted: Wanted) -> Unit:
+    """The unit in the housing, and with the oil, that a data sheet says."""
+    drawn = made.length, made.width, made.height
+    box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in drawn)
+    found = replace(made, length=box[0], width=box[1], height=box[2])
+    least = [side - room for side, room in zip(drawn, ROOM, strict=True)]
+    if any(side < need for side, need in zip(box, least, strict=True)):
+        need = replace(made, length=least[0], width=least[1], height=least[2]).area
+        raise ScenarioError(
+            f"--housing of {_sides(box)} is too small for the gears: expected {_sides(least)} at least, or"
+            f" {need:.3g} m2. Give a larger one, or a lower power or ratio."
+        )
+    level = bath(found)["level"] or (wanted.volume or 0.0) / (found.length * found.width)
+    if level > found.height - made.wall:
+        most = 1000 * FILLED * (found.length - 2 * made.wall) * (found.width - 2 * made.wall) * height_of_axes(made)
+        raise ScenarioError(
+            f"--oil-volume of {1000 * (wanted.volume or 0.0):.3g} l stands {1000 * level:.0f} mm high in a housing of"
+            f" {_sides(box)}. Give {most:.3g} l or less, which reaches the axes."
+        )
+    return found
+
+
+def _sides(box: Sequence[float]) -> str:
+    """Sides of a box as the command line has them."""
+    return f"{'x'.join(f'{1000 * side:.0f}' for side in box)} mm"
 
 
 def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> None:
@@ -212,14 +274,22 @@ def height_of_axes(made: Unit) -> float:
 
 def bath(made: Unit) -> dict[str, Any]:
     """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
+    given, floor = made.volume, (made.length - 2 * made.wall) * (made.width - 2 * made.wall)
     if not wheels_dip(made):
-        volume = SHARE * made.length * made.width * made.height
-        return {"volume": 1000 * volume, "level": None, "rule": f"{100 * SHARE:.0f} % of the housing's volume"}
+        volume = given or SHARE * made.length * made.width * made.height
+        rule = "data sheet" if given else f"assumed: {100 * SHARE:.0f} % of the housing's volume"
+        return {"volume": 1000 * volume, "level": None, "rule": rule}
+    taken = f"gears, ribs and shafts take {100 * (1 - FILLED):.0f} % of what is below it"
+    if given:
+        return {
+            "volume": 1000 * given,
+            "level": given / FILLED / floor,
+            "rule": f"data sheet; its level assumed: {taken}",
+        }
     smallest = min(made.stages, key=lambda s: s.r_2)
     level = height_of_axes(made) - smallest.r_2 + min(DIP * smallest.m_n, smallest.r_2)
-    floor = (made.length - 2 * made.wall) * (made.width - 2 * made.wall)
-    rule = f"level above the housing's bottom at which the smallest wheel dips by {DIP:g} modules; gears, ribs and"
-    rule += f" shafts take {100 * (1 - FILLED):.0f} % of what is below it"
+    rule = "assumed: level above the housing's bottom at which the smallest wheel dips by"
+    rule += f" {DIP:g} modules; {taken}"
     return {"volume": 1000 * FILLED * level * floor, "level": level, "rule": rule}
 
 
@@ -241,11 +311,34 @@ def compute_wetted_area(stage: Stage) -> float:
 
 def splash(made: Unit) -> dict[str, float]:
     """What a unit's walls have from the gear that throws most: the first that dips, and the shaft it is on."""
-    first, worm = made.stages[0], isinstance(made.stages[0], WormStage)
     return {
         "A": REACHED * made.area,
-        "r": first.r_1 if worm else first.reach,
-        "shaft": 0 if worm else 1,
+        "shaft": 0 if isinstance(made.stages[0], WormStage) else 1,
         "share": ALONG,
-        "L": made.height,
     }
+
+
+def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wanted:
+    """What a data sheet says, in SI.
+
+    Args:
+        centre: centre distance of the last stage, as it is written, None where it says nothing
+        housing: length x width x height of the housing, or its area
+        volume: of the oil
+
+    Raises:
+        ScenarioError: what is no size
+    """
+    given = ((centre, "m", "--centre-distance"), (volume, "m3", "--oil-volume"))
+    size, oil = (None if text is None else _positive(text, unit, name) for text, unit, name in given)
+    if housing is None or not (sides := re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing)):
+        return Wanted(size, None, None if housing is None else _positive(housing, "m2", "--housing"), oil)
+    box = tuple(_positive(f"{side} {sides[4]}", "m", "--housing") for side in sides.groups()[:3])
+    return Wanted(size, box, None, oil)
+
+
+def _positive(written: str, unit: str, name: str) -> float:
+    """A size in SI."""
+    if (value := to_si(written, unit, name=name)) <= 0:
+        raise ScenarioError(f'{name} = "{written}" is no size. It must be above 0.')
+    return value

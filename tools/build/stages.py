@@ -255,11 +255,10 @@ class PlanetaryStage(Stage):
         return {f"{key}_{mesh}": v[key] for mesh, v in (("sp", outer), ("pr", inner)) for key in ("eps_alpha", "H_v")}
 
 
-def _cylindrical(kind: str, u: float, T: float, n: float, x: float) -> Stage:
+def _cylindrical(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> Stage:
     """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
     d_1 = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3)
-    wanted = 1000 * d_1 * (1 + u) / 2
-    a = min(c for c in CENTRES if c >= SHORT * wanted) / 1000
+    a = a or _standard(d_1 * (1 + u) / 2)
     d_1 = 2 * a / (1 + u)
     aim = KINDS[kind]
     m_n = max((m for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH), default=MODULES[0]) / 1000
@@ -274,7 +273,7 @@ def _cylindrical(kind: str, u: float, T: float, n: float, x: float) -> Stage:
     return Stage(kind, z_1, teeth - z_1, m_n, beta, b, T, n, x + b / 2)
 
 
-def _bevel(kind: str, u: float, T: float, n: float, x: float) -> BevelStage:
+def _bevel(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> BevelStage:
     """Bevel gears by the load intensity of their virtual gears at mid face; outer diameter in steps of 5 mm."""
     slim = FACE / (1 - FACE / 2) / 2  # face width over mean diameter of the pinion and sqrt(u^2 + 1)
     d_m = (2 * T / (slim * u * K_BEVEL)) ** (1 / 3)
@@ -288,16 +287,20 @@ def _bevel(kind: str, u: float, T: float, n: float, x: float) -> BevelStage:
     return BevelStage(kind, z_1, z_2, m_n, beta, b, T, n, x + b / 2, m_et)
 
 
-def _worm(kind: str, u: float, T: float, n: float, x: float) -> WormStage:
+def _worm(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> WormStage:
     """A worm and its wheel by the torque that makers rate a centre distance for."""
     z_1 = next(z for most, z in STARTS.items() if u <= most + 1e-9)
     z_2 = round(u * z_1)
-    wanted = 1000 * (T * u / T_WORM) ** (1 / 3)
-    a = min(c for c in CENTRES if c >= SHORT * wanted) / 1000
+    a = a or _standard((T * u / T_WORM) ** (1 / 3))
     m_x = round(2e4 * (2 - SLIM) * a / z_2) / 2e4  # in steps of 0.05 mm
     d_1 = 2 * a - m_x * z_2
     b = round(750 * d_1) / 1000
     return WormStage(kind, z_1, z_2, m_x, KINDS[kind], b, T, n, x + b / 2, d_1)
+
+
+def _standard(a: float) -> float:
+    """The standard centre distance for the one that is wanted [m]."""
+    return min(c for c in CENTRES if c >= SHORT * 1000 * a) / 1000
 
 
 def _fault(z_1: int, z_2: int, u: float) -> float:
@@ -305,7 +308,7 @@ def _fault(z_1: int, z_2: int, u: float) -> float:
     return abs(z_2 / z_1 / u - 1) + 0.02 * (math.gcd(z_1, z_2) > 1)
 
 
-def _planetary(kind: str, u: float, T: float, n: float, x: float) -> PlanetaryStage:
+def _planetary(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> PlanetaryStage:
     """A sun of the next standard module, by the load intensity of sun and planet; planets at equal angles."""
     part = max(u / 2 - 1, 0.5)
     d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
@@ -322,7 +325,7 @@ def _fits(z_1: int, z_3: int) -> bool:
 
 
 #: Who makes a stage of a kind.
-MAKE: Mapping[str, Callable[[str, float, float, float, float], Stage]] = {
+MAKE: Mapping[str, Callable[[str, float, float, float, float, float | None], Stage]] = {
     "spur": _cylindrical,
     "helical": _cylindrical,
     "bevel": _bevel,

@@ -17,17 +17,18 @@ FAILED = 1
 
 
 def bench(
-    rig: str,
+    rig: str = "planetary",
     tests: str | None = None,
     fmu: bool = False,
     batch: bool = False,
     uncertainty: bool = False,
     contact: bool = False,
+    scale: bool = False,
     draws: int = 10_000,
     json: str | None = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
-    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
+    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty, "scale": scale}
     if contact:
         console.use_one_thread()
     from ..bench import bench

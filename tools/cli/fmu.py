@@ -1,4 +1,4 @@
-"""A rig as an FMU, and an FMU played."""
+"""A rig as an FMU or as a page, and an FMU played."""
 
 from __future__ import annotations
 
@@ -59,6 +59,24 @@ def export(
     )
     found = written.as_dict()
     console.answer(found, json, lambda: _print_system(found) if ssp else _print_fmu(found))
+
+
+def page(
+    rig: str,
+    out: Path,
+    set_: list[str] | None = None,
+    with_: list[str] | None = None,
+    limit: str = "95 degC",
+    data: Path | None = None,
+    diagnosis: Path | None = None,
+    json: str | None = None,
+) -> None:
+    """Write the machine as one HTML file that computes in any browser, without a server or a network."""
+    console.writable(out, console.file_of(json))
+    made = gh.page(rig, set=set_ or [], more=with_ or [], limit=limit, data=data, extended=diagnosis)
+    made.save(out)
+    found = made.as_dict() | {"out": str(out)}
+    console.answer(found, json, lambda: console.say(f"{out}: {made.title}, fields: {', '.join(found['fields'])}"))
 
 
 def play(

@@ -28,7 +28,7 @@ def describe(name: str, command: C) -> C:
     """
     texts = {**TEXTS["every"], **TEXTS.get(name, {})}
     kinds = get_type_hints(command)
-    options = {key: Annotated[kind, _option(texts[key])] for key, kind in kinds.items() if key in texts}
+    options = {key: Annotated[kind, _option(texts[key], kind)] for key, kind in kinds.items() if key in texts}
     command.__annotations__ = kinds | options
     return _with_parts(command) if "rig" in kinds else command
 
@@ -49,13 +49,29 @@ def _with_parts(command: C) -> C:
     return cast(C, run)
 
 
-def _option(about: str | Mapping[str, Any]) -> Any:
+def _option(about: str | Mapping[str, Any], type_: Any = str) -> Any:
     """A parameter as Typer takes it."""
     told: dict[str, Any] = {"help": about} if isinstance(about, str) else dict(about)
     kind = typer.Argument if told.pop("argument", False) else typer.Option
     if told.pop("completed", False):
         told["autocompletion"] = _rigs
+    if type_ is float:
+        told |= {"parser": _number, "metavar": "<float>"}
     return kind(*told.pop("flags", ()), **told)
+
+
+def _number(text: str | float) -> float:
+    """A number as it is written, or its default."""
+    from ...model.errors import ScenarioError
+    from ...model.units import refuse_comma
+
+    try:
+        refuse_comma(str(text), "it")
+        return float(text)
+    except ScenarioError as error:
+        raise typer.BadParameter(str(error)) from None
+    except ValueError:
+        raise typer.BadParameter(f'"{text}" is no number.') from None
 
 
 def _rigs(incomplete: str) -> list[str]:

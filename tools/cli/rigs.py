@@ -11,7 +11,7 @@ from typing import Any
 import gearheat as gh
 
 from ..show import console
-from ..show.notes import print_outside, print_stacked, print_unchecked
+from ..show.notes import PLURAL, print_outside, print_stacked, print_unchecked
 
 
 def new(
@@ -26,6 +26,9 @@ def new(
     cooler: bool = False,
     base: str = "concrete",
     motor_heat: str | None = None,
+    centre_distance: str | None = None,
+    housing: str | None = None,
+    oil_volume: str | None = None,
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
@@ -33,7 +36,8 @@ def new(
     path = out or Path(f"{name}.toml")
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
-    rig = gh.new(name, **plate, **chosen, motor_heat=motor_heat, out=path)
+    sizes: dict[str, Any] = {"centre_distance": centre_distance, "housing": housing, "oil_volume": oil_volume}
+    rig = gh.new(name, **plate, **chosen, **sizes, motor_heat=motor_heat, out=path)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
         console.note(note)
@@ -87,6 +91,10 @@ def _print_new(found: Mapping[str, Any]) -> None:
     print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
     by = "flange" if found["base"] == "flange" else "foot"
     print(f"efficiency {100 * found['efficiency']:.2f} %, {100 * found['foot_share']:.0f} % of the heat by the {by}")
+    losses = ", ".join(f"{PLURAL.get(kind, kind)} {P:.3g} W" for kind, P in found["losses_W"].items())
+    print(f"  loss: {losses}; {found['no_load_W']:.3g} W without load")
+    (low, high), (cold, warm) = found["usual"].values()
+    print(f"  usual of such units: efficiency {low:g} to {high:g} %, oil {cold:g} to {warm:g} degC")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
 
 

@@ -13,6 +13,12 @@ from ..show import console
 from ..show.display import Display
 from ..show.notes import print_outside, print_unchecked
 
+#: What is said where a machine runs against what its rig is meant for.
+BACKWARD = (
+    "power flows the other way than the rig file means it: a sign may be wrong. A load without a sign is set by"
+    ' --set "END.load=... N.m", and --set drives=END says where power enters.'
+)
+
 
 def steady(
     rig: str,
@@ -27,7 +33,7 @@ def steady(
     state = gh.steady(extended or rig, set_ or [])
     found = _write_picture(state.as_dict(), plot, state)
     shows = list(state.result.columns) if everything else state.first
-    console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found))
+    console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found, state.headlines))
 
 
 def simulate(
@@ -109,7 +115,7 @@ def sweep(
 
 def map_(
     rig: str,
-    out: Path,
+    out: Path | None = None,
     speed: str | None = None,
     torque: str | None = None,
     grid: str = "21x21",
@@ -122,8 +128,9 @@ def map_(
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
-    points.save(out)
-    found = _write_picture({**points.as_dict(), "out": str(out)}, plot, points, say=False)
+    if out is not None:
+        points.save(out)
+    found = _write_picture({**points.as_dict(), "out": out and str(out)}, plot, points, say=False)
     console.answer(found, json, lambda: _print_map(points, found))
 
 
@@ -187,17 +194,23 @@ def print_run(run: gh.TimeSeries, out: Path, plot: Path | None, json: str | None
 def print_end(out: Path, found: Mapping[str, Any]) -> None:
     """Print where a time series ends, from its file and its JSON object."""
     console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+    if found.get("backward"):
+        console.note(f"{found['backward']} of {found['rows']} rows: {BACKWARD}")
     print_outside(found.get("outside", ()))
     print_unchecked(found.get("unchecked", ()))
 
 
-def _print_point(title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, Any]) -> None:
-    console.table(title, ("name", "value", "unit", "meaning"), rows)
+def _print_point(
+    title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, Any], headlines: Sequence[str] = ()
+) -> None:
+    console.table("\n".join((title, *headlines)), ("name", "value", "unit", "meaning"), rows)
     if more := len(found["values"]) - len(rows):
         console.say(f"{more} more values with --all")
     console.say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     if found.get("backward"):
-        console.note("power flows the other way than at the operating point of the rig file; a sign may be wrong")
+        console.note(BACKWARD)
+    for line in found.get("far", ()):
+        console.note(f"{line}. Check its digits and its unit.")
     print_outside(found["outside"])
     print_unchecked(found["unchecked"])
 
@@ -251,7 +264,8 @@ def _print_map(points: gh.Map, found: Mapping[str, Any]) -> None:
     console.table(points.title, *points.table())
     if found["without_result"]:
         console.say(f"{found['without_result']} points have no steady state; their cells are nan")
-    print(", ".join(filter(None, (found["out"], found["plot"]))))
+    if written := [name for name in (found["out"], found["plot"]) if name]:
+        print(", ".join(written))
 
 
 def _print_teeth(felt: gh.TeethFelt) -> None:

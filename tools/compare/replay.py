@@ -160,14 +160,17 @@ class Rivals:
         data = windows([fitted], given, read, 0)
         self.scale = np.maximum(np.abs(data.given[data.there]).max(axis=0), 1e-9)
         self.node = [self._node(data, j) for j in range(len(read))]
-        X = np.concatenate([_lagged(u[:n] / self.scale) for u, n in zip(data.given, _lengths(data), strict=True)])
-        Y = np.concatenate([y[:n] for y, n in zip(data.read, _lengths(data), strict=True)])
-        self.regression = []
-        for y in Y.T:
-            known = np.isfinite(y)
-            A = X[known].T @ X[known]
-            ridge = 1e-6 * np.trace(A) / len(A) * np.eye(len(A))
-            self.regression.append(np.linalg.solve(A + ridge, X[known].T @ y[known]))
+        self.regression = [self._regress(data, j) for j in range(len(read))]
+
+    def _regress(self, data: Windows, j: int) -> np.ndarray:
+        """Coefficients of a regression of sensor j on inputs now and before, by normal equations, window by window."""
+        A: Any = 0.0
+        b: Any = 0.0
+        for u, y, n in zip(data.given, data.read[:, :, j], _lengths(data), strict=True):
+            X, known = _lagged(u[:n] / self.scale), np.isfinite(y[:n])
+            A, b = A + X[known].T @ X[known], b + X[known].T @ y[:n][known]
+        ridge = 1e-6 * np.trace(A) / len(A) * np.eye(len(A))
+        return np.asarray(np.linalg.solve(A + ridge, b))
 
     def _node(self, data: Windows, j: int) -> np.ndarray:
         """Decay [logit] and gains of a first-order model of sensor j, by least squares of its free run."""

@@ -19,6 +19,8 @@ def titled(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> dict[
     return {f"{name} [{show_unit(units[name])}]": from_si(column, units[name]) for name, column in columns.items()}
 
 
+#: Rows that are written at a time.
+BLOCK = 1000
 #: What a spreadsheet takes a cell for that begins so: a formula.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
@@ -48,5 +50,8 @@ def rows_text(head: Iterable[str], rows: Iterable[Iterable[float | str | None]])
 def table_text(columns: Mapping[str, np.ndarray]) -> str:
     """CSV text of columns of numbers, by their titles."""
     line = ",".join(["%.9g"] * len(columns))
-    rows = np.column_stack(list(columns.values())).tolist()
-    return "\n".join([",".join(map(cell_text, columns)), *(line % tuple(row) for row in rows)]) + "\n"
+    text = [",".join(map(cell_text, columns))]
+    rows = np.column_stack(list(columns.values()))
+    for first in range(0, len(rows), BLOCK):  # as Python's numbers all of them at once would take four times the memory
+        text += [line % tuple(row) for row in rows[first : first + BLOCK].tolist()]
+    return "\n".join(text) + "\n"

@@ -8,6 +8,8 @@ from typing import Any
 
 from .console import cell, is_number, say, screen_width, table
 
+#: Roles of parts that lose power, as several are called.
+PLURAL = {"bearing": "bearings", "seal": "seals"}
 #: Width that a column of sentences needs beside others [characters].
 READABLE = 30
 #: Indent of sentences under their row [characters].

@@ -34,7 +34,7 @@ def driving(scenario: Scenario) -> tuple[str, str]:
         ScenarioError: one of them is not
     """
     given = [f"{end}.{quantity}" for end, quantities in scenario.given.items() for quantity in quantities]
-    found = [next((path for path in given if path.endswith(f".{quantity}")), "") for quantity in ("w", "tau")]
+    found = [next((path for path in given if path.endswith(keys)), "") for keys in (".w", (".tau", ".load"))]
     if not all(found):
         what = "speed" if not found[0] else "torque"
         raise ScenarioError(f"{scenario.name}: no {what} is given at a shaft end, see [drive] of the rig file.")

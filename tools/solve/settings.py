@@ -15,7 +15,8 @@ from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import find_map, names_map
 from ...scenarios.given import Settings, assignments_of
-from ...scenarios.scenario import Scenario, deduce_drive, parse_assignments
+from ...scenarios.housing import oil_problems
+from ...scenarios.scenario import DRIVES, Scenario, check_drives, deduce_drive, parse_assignments
 from ...scenarios.write import SET
 
 Drive = Mapping[str, tuple[str, ...]]
@@ -36,7 +37,7 @@ def adjust(
     Args:
         scenario: the rig
         assignments: values by name, or texts "NAME=VALUE": parameters, inputs, start values of states, choices
-            ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
+            ("gear_set.power_flow=ideal"), the end that "drives", and parts filled from a catalogue ("oil=MINR")
         named: further values that come from outside: sought by a design, varied by a sweep, or given by a duty
         drive: quantities given per shaft end, where that is known
 
@@ -44,13 +45,16 @@ def adjust(
         ScenarioError: all problems of all assignments at once
     """
     assignments = assignments_of(assignments, scenario.settable)
+    for end in [text.partition("=")[2].strip() for text in assignments if _name(text) == DRIVES]:
+        check_drives(f"{scenario.name}: {DRIVES}", end, scenario.spec.of_type("ShaftEnd"))
+        scenario = replace(scenario, drives=end)
     choices, problems = _choices(scenario.spec, assignments)
     names = [_name(text) for text in assignments]
     twice = [name for name in dict.fromkeys(names) if name and names.count(name) > 1]
     problems += [f'"{name}" is set twice. Set it once.' for name in twice]
-    values: dict[str, float] = {}
+    values, others = dict[str, float](), {DRIVES, *choice_paths(scenario.spec)}
     with problems:
-        values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
+        values = parse_assignments(scenario, (a for a in assignments if _name(a) not in others))
     problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
@@ -60,6 +64,7 @@ def adjust(
     set_up = scenario.with_values(values, SET).driven(driven)
     sources = {**set_up.value_sources, **_list_filled_sources(scenario, assignments)}
     set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    Problems(oil_problems(set_up.spec)).check()
     return set_up.with_values(_derive_values(set_up.spec, named), SET)
 
 

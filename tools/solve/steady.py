@@ -14,16 +14,27 @@ from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...model.run.result import Result
 from ...model.run.steady import steady as solve
-from ...model.units import from_si, show_unit
+from ...model.units import from_si, show_unit, text
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
+from ..show.console import note
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
+from ..show.notes import PLURAL
 from ..show.picture import Picture
 from .settings import adjust, find_unchecked, flat_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+#: Parts from which on the way to a steady state is told: some seconds.
+LARGE = 500
+#: Speed or torque over that of the rig file from which on it may be a slip [1].
+FAR = 5.0
+#: Temperature of the oil up to which gear units are rated thermally [K].
+RATED = 273.15 + 95.0
+#: What it is.
+END = "the 95 degC up to which ISO/TR 14179-1 rates gear units"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,13 +45,16 @@ class SteadyState(Quantities):
         scenario: the rig as set
         flat: its model
         result: states, inputs and outputs in SI, with the power balance and the laws used
-        backward: whether power flows the other way than at the operating point of the rig file
+        backward: whether power leaves at the end that drives, or flows the other way than at the operating point where
+            the rig file names no such end
+        far: speeds and torques that are far above those of the rig file, in words
     """
 
     scenario: Scenario
     flat: FlatModel
     result: Result
     backward: bool
+    far: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> float:
         """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
@@ -48,13 +62,8 @@ class SteadyState(Quantities):
 
     def losses(self) -> dict[str, float]:
         """Loss power of each part that has one [W]; of a part with several kinds their sum."""
-        meters, found = self.scenario.spec.of_type("Efficiency"), dict[str, float]()
-        for name in self.result.columns:
-            part, _, key = name.rpartition(".")
-            whole = f"{part}.P_loss" in self.result.columns
-            if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
-                found[part] = found.get(part, 0.0) + self[name]
-        return found
+        names = loss_names(self.scenario, self.result.columns)
+        return {part: sum(self[name] for name in own) for part, own in names.items()}
 
     def power(self) -> dict[str, float]:
         """Power into the gearbox at each shaft end [W], below zero where it flows out; the largest first."""
@@ -67,6 +76,32 @@ class SteadyState(Quantities):
         """The rig, what is shown of it, and which way power flows."""
         flows = [f"{_kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
         return ", ".join([f"{self.scenario.name}: steady state", *flows])
+
+    def losses_by_kind(self) -> dict[str, float]:
+        """Loss power by the role of the parts that have it [W], the largest first."""
+        found = dict[str, float]()
+        for part, loss in self.losses().items():
+            kind = self.scenario.types[part].role or part
+            found[kind] = found.get(kind, 0.0) + loss
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+    @property
+    def headlines(self) -> list[str]:
+        """Efficiency, losses by kind, the hottest body, and how far the oil is below the end of thermal ratings."""
+        by_kind, meters = self.losses_by_kind(), self.scenario.spec.of_type("Efficiency")
+        losses = ", ".join(f"{PLURAL.get(kind, kind)} {_kilowatts(P)}" for kind, P in by_kind.items())
+        eta = f"efficiency {100 * self[f'{meters[0]}.eta']:.2f} %, " if meters else ""
+        lines = [f"{eta}loss {_kilowatts(sum(by_kind.values()))}: {losses}"] if by_kind else []
+        warm = {q.name.partition(".")[0]: self[q.name] for q in self.flat.states if q.unit == "K"}
+        if warm:
+            hottest = max(warm, key=lambda body: warm[body])
+            lines.append(f"hottest: {hottest} {text(warm[hottest], 'K', 3)}")
+        for bath in (part for part in warm if self.scenario.types[part].role == "bath"):
+            left = RATED - warm[bath]
+            lines.append(
+                f"{bath} {text(warm[bath], 'K', 3)}, {abs(left):.0f} K {'below' if left > 0 else 'above'} {END}"
+            )
+        return lines
 
     @property
     def first(self) -> list[str]:
@@ -85,6 +120,8 @@ class SteadyState(Quantities):
             "plot": None,
             "power_W": self.power(),
             "backward": self.backward,
+            "far": list(self.far),
+            "losses_W": self.losses_by_kind(),
             **point_of(self.flat, self.result),
             "unchecked": find_unchecked(self.scenario, self.flat),
         }
@@ -138,11 +175,25 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     """
     usual = scenario_of(rig)
     scenario = adjust(usual, set)
+    if large := len(scenario.spec.parts) > LARGE:
+        note(f"{scenario.name}: equations of {len(scenario.spec.parts)} parts")
     flat = flat_of(scenario)
+    if large:
+        note(f"{scenario.name}: steady state of {len(flat.states)} states")
+    found = solve(flat, conditions(scenario, flat))
     given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
     signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
     backward = len(given) == 2 and bool(signs[0] * signs[1] < 0)
-    return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)), backward)
+    if scenario.drives:
+        backward = float(found[f"{scenario.drives}.P"][0]) < 0
+    units = {"w": "rad/s", "tau": "N.m", "load": "N.m"}
+    both = [(path, usual.operating_point.get(path, 0.0), scenario.operating_point.get(path, 0.0)) for path in given]
+    far = [
+        f"{path} = {text(now, unit)} is {now / before:.3g} times that of the rig file, {text(before, unit)}"
+        for path, before, now in both
+        if before and abs(now / before) > FAR and (unit := units[path.rpartition(".")[2]])
+    ]
+    return SteadyState(scenario, flat, found, backward, tuple(far))
 
 
 def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list[str]:
@@ -157,6 +208,23 @@ def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list
     names |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
     names |= {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
     return [name for name in values if name in names]
+
+
+def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]:
+    """Part -> the names whose sum is its loss power: its whole loss, or its kinds where there is no whole.
+
+    Args:
+        scenario: the rig
+        names: of all outputs
+    """
+    every, meters = list(names), scenario.spec.of_type("Efficiency")
+    found: dict[str, list[str]] = {}
+    for name in every:
+        part, _, key = name.rpartition(".")
+        whole = f"{part}.P_loss" in every
+        if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
+            found.setdefault(part, []).append(name)
+    return found
 
 
 def leading_outputs(scenario: Scenario) -> list[str]:

@@ -1,0 +1,58 @@
+"""What is plausible of a gear unit at its name plate, and what helps where it is not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ...model.files import tables
+from . import sizing
+from .bearings import LIFE
+from .sizing import Unit
+
+#: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
+MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
+#: Oil that seals and oil stand for long [degC].
+WARM = (20.0, 100.0)
+#: Efficiency below which standard sizes do not fit the power.
+POOR = 0.4
+
+
+def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, float]:
+    """Efficiencies [%] of units of such stages, power and ratio."""
+    kinds, known = stages.split(",") if isinstance(stages, str) else list(stages), MACHINES["efficiency"]
+    if kinds == ["worm"]:
+        low, high = next(band for most, band in MACHINES["worm"].items() if ratio <= float(most))
+    else:
+        low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
+    return (low if kW >= 1 else low - known["small"]), high
+
+
+def notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
+    """What a user should know about a unit, and what its largest loss asks for where it is hot or lossy.
+
+    Args:
+        made: the unit
+        sizes: the JSON object of `gearheat new`
+    """
+    eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
+    height = sizing.height_of_axes(made)
+    deepest = height - max(stage.reach for stage in made.stages)
+    if (level := sizing.bath(made)["level"]) is not None and not deepest < level < height:
+        yield (
+            f"the oil stands at {1000 * level:.0f} mm, expected {1000 * deepest:.0f} mm, where the largest wheel dips,"
+            f" to {1000 * height:.0f} mm, where the axes are. Change --oil-volume."
+        )
+    hot = sizes["oil_degC"] > WARM[1]
+    if hot:
+        yield f"the oil is above {WARM[1]:g} degC: such a unit needs --fan or --cooler, fins, or a larger housing."
+    if eta < 100 * POOR:
+        yield "most of the power is lost: standard modules and bearings are too large for it."
+    if hot or eta < low:
+        kind, loss = next(iter(sizes["losses_W"].items()))
+        share = loss / sum(sizes["losses_W"].values())
+        yield f"the largest loss is that of {kind}, {100 * share:.0f} %: {MACHINES['advice'][kind]}."
+    for shaft in made.shafts:
+        for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
+            if life < LIFE:
+                yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
