@@ -194,10 +194,16 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
     if "bevel" in kinds[1:]:
-        problems.append("a bevel stage comes first: here its pinion is on the input shaft.")
-    problems += [f"a {kind} stage stands alone here." for kind in ALONE if kind in kinds and len(kinds) > 1]
+        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
+        problems.append(f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}.")
+    problems += [
+        f"a {kind} stage stands alone here. Give --stages {kind}, for ratios of {LEAST[kind]:g} to {MOST[kind]:g}, or"
+        f" helical stages, of up to {MOST['helical']:g} each."
+        for kind in ALONE
+        if kind in kinds and len(kinds) > 1
+    ]
     if not (power > 0 and speed > 0):
-        problems.append("power and speed must be above 0.")
+        problems.append('power and speed must be above 0. Give for example --power "7.5 kW" --speed "1450 rpm".')
     if not 0 < ratio < math.inf:
         raise ScenarioError([*problems, f"a ratio of {ratio:g} is none. Give the input's speed over the output's."])
     least, most = (

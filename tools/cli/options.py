@@ -63,15 +63,12 @@ def _option(about: str | Mapping[str, Any], type_: Any = str) -> Any:
 def _number(text: str | float) -> float:
     """A number as it is written, or its default."""
     from ...model.errors import ScenarioError
-    from ...model.units import refuse_comma
+    from ..show.console import number
 
     try:
-        refuse_comma(str(text), "it")
-        return float(text)
+        return number(str(text))
     except ScenarioError as error:
         raise typer.BadParameter(str(error)) from None
-    except ValueError:
-        raise typer.BadParameter(f'"{text}" is no number.') from None
 
 
 def _rigs(incomplete: str) -> list[str]:

@@ -23,6 +23,7 @@ from typing import Any, ParamSpec
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
+from ...model.units import refuse_comma
 from .ending import INTERRUPTED, SAID
 
 P = ParamSpec("P")
@@ -273,6 +274,15 @@ def say(text: str) -> None:
         return
     for line in text.split("\n"):
         print(textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False))
+
+
+def number(text: str) -> float:
+    """A number as a user writes it. Raises ScenarioError where it is none, or has a decimal comma."""
+    refuse_comma(text, "the number")
+    try:
+        return float(text)
+    except ValueError:
+        raise ScenarioError(f'"{text}" is no number.') from None
 
 
 def table(
