@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import hypot
 from pathlib import Path
 
@@ -130,7 +131,7 @@ class Scenario:
             found[path] = hypot(found.get(path, 0.0), change)
         return found
 
-    @property
+    @cached_property
     def types(self) -> dict[str, type[Component]]:
         """Part -> its type."""
         return {part.name: self.spec.types[part.type] for part in self.spec.parts}

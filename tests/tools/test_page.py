@@ -131,21 +131,23 @@ def test_the_page_is_one_small_file_that_says_what_it_holds(pages: dict[str, gh.
 def test_measured_points_and_further_fields(tmp_path: Path) -> None:
     table = tmp_path / "read.csv"
     table.write_text("carrier.w [rpm],carrier.tau [Nm],oil.T [degC]\n250,2500,80\n100,500,50\n")
-    data = told(page := gh.page("planetary", data=table, more=["foot.G", "oil.c_p"], extended="planetary"))
+    gh.load("planetary").with_({"cooling.A": "0.3 m2"}).save(tmp_path / "dusty.toml")
+    page = gh.page("planetary", data=table, more=["foot.G", "oil.c_p"], extended=[tmp_path / "dusty.toml"])
+    data = told(page)
     assert data["measured"]["names"] == ["carrier.w", "carrier.tau", "oil.T"]
     assert data["measured"]["rows"][0][2] == pytest.approx(353.15)
-    assert page.found["machines"] == ["as given", "extended"]
+    assert page.found["machines"] == ["as given", "dusty"]
     assert len(data["modules"]) == 1
     assert [f["name"] for f in data["machines"][1]["fields"]].count("foot.G") == 1
 
 
 def test_what_does_not_fit_a_page_is_told_by_name(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match=r'no parameter "foot.H".* Did you mean "foot.G"'):
-        gh.page("planetary", more=["foot.H"])
+    with pytest.raises(ScenarioError, match=r'no parameter "seat_1.H".* Did you mean "seat_1.G"'):
+        gh.page("wind_turbine", more=["seat_1.H"])
     table = tmp_path / "read.csv"
-    table.write_text("oil.Temp [degC],oil.T [kW]\n50,x\n")
-    with pytest.raises(DataError, match=r'the model has no "oil.Temp"(.|\n)*"oil.T \[kW\]" is no number'):
-        gh.page("planetary", data=table)
+    table.write_text("sump.Temp [degC],sump.T [degC]\n50,x\n")
+    with pytest.raises(DataError, match=r'the model has no "sump.Temp"(.|\n)*"sump.T \[degC\]" is no number'):
+        gh.page("wind_turbine", data=table)
 
 
 #: Opens a page at three widths, moves a slider, and writes what it sees into itself.

@@ -68,12 +68,12 @@ def page(
     with_: list[str] | None = None,
     limit: str = "95 degC",
     data: Path | None = None,
-    diagnosis: Path | None = None,
+    extended: list[Path] | None = None,
     json: str | None = None,
 ) -> None:
     """Write the machine as one HTML file that computes in any browser, without a server or a network."""
     console.writable(out, console.file_of(json))
-    made = gh.page(rig, set=set_ or [], more=with_ or [], limit=limit, data=data, extended=diagnosis)
+    made = gh.page(rig, set=set_ or [], more=with_ or [], limit=limit, data=data, extended=extended or ())
     made.save(out)
     found = made.as_dict() | {"out": str(out)}
     console.answer(found, json, lambda: console.say(f"{out}: {made.title}, fields: {', '.join(found['fields'])}"))

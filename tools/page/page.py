@@ -16,7 +16,7 @@ from markupsafe import Markup
 from ...fmu.web import module, with_checks
 from ...model.core.connect import nets
 from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import DataError, Problems, suggestion
+from ...model.errors import DataError, Problems, ScenarioError, suggestion
 from ...model.machines.spec import assemble
 from ...model.units import show_unit, to_si
 from ...scenarios.csv_table import in_si, numbers, read_cells, scale, split_unit
@@ -25,6 +25,7 @@ from ...scenarios.scenario import Scenario
 from ..describe.description import show
 from ..show.display import Answer
 from ..show.pages import as_data, load_plot_library, page as render
+from ..solve.maps import driving
 from ..solve.settings import adjust, flat_of
 from ..solve.steady import first_of, leading_outputs, loss_names
 
@@ -72,7 +73,7 @@ def page(
     more: Sequence[str] = (),
     limit: str = "95 degC",
     data: str | Path | None = None,
-    extended: RigLike | None = None,
+    extended: Sequence[str | Path] = (),
 ) -> Page:
     """The machine in one self-contained HTML file, which computes steady states, warm-ups and maps in the browser.
 
@@ -82,7 +83,7 @@ def page(
         more: parameters that get a field, besides those that matter most
         limit: temperature that the oil is to keep
         data: CSV of measured points, columns named as the model's quantities with units, "time [min]" of a warm-up
-        extended: a second state of the machine to switch to, such as the findings of a diagnosis
+        extended: rig files of other states of the machine to switch to, such as those that `diagnose` writes
 
     Raises:
         GearheatError: all that is wrong with what is asked; the compiler fails; the page becomes too large
@@ -92,8 +93,7 @@ def page(
         >>> gh.page("planetary").save("planetary.html")  # doctest: +SKIP
     """
     scenarios = {"as given": adjust(scenario_of(rig), set)}
-    if extended is not None:
-        scenarios["extended"] = adjust(scenario_of(extended), set)
+    scenarios |= {Path(file).stem: adjust(scenario_of(file), set) for file in extended}
     first = scenarios["as given"]
     measured = None if data is None else _measured(Path(data), flat_of(first))
     modules: dict[bytes, int] = {}
@@ -160,8 +160,16 @@ def _machine(label: str, scenario: Scenario, more: Sequence[str], modules: dict[
         "losses": loss_names(scenario, outputs),
         "heat": _ways_out(scenario, set(outputs)),
         "room": rooms[0] if rooms else None,
-        "axes": [n for q in ("w", "tau") for end, g in scenario.given.items() if q in g for n in [f"{end}.{q}"]],
+        "axes": _axes(scenario),
     }
+
+
+def _axes(scenario: Scenario) -> list[str]:
+    """Speed and torque of the map, none where they are not both given."""
+    try:
+        return list(driving(scenario))
+    except ScenarioError:
+        return []
 
 
 def _end(value: float) -> float | None:
