@@ -58,7 +58,9 @@ class CampaignFiles(Display):
         rig = self.adapter.rig
         given: dict[str, Any] = {"card": self.card, "quick": quick, "seed": seed}
         if self.adapter.logs:
-            return diagnose(None, rig, logs=asked, reference_logs=healthy, sibling_logs=[p for p in siblings if p], **given)
+            return diagnose(
+                None, rig, logs=asked, reference_logs=healthy, sibling_logs=[p for p in siblings if p], **given
+            )
         return diagnose(asked, rig, reference=healthy, **given)
 
 
