@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import hypot
 from pathlib import Path
 
@@ -30,7 +31,7 @@ class Instrument:
         name: of the instrument
         column: column of a measured table
         reads: path in the model
-        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power" or "efficiency"
+        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency" or "current"
         role: "given" drives the model, "read" is compared
         unit: of the column
         magnitude: whether the column holds magnitudes
@@ -130,7 +131,7 @@ class Scenario:
             found[path] = hypot(found.get(path, 0.0), change)
         return found
 
-    @property
+    @cached_property
     def types(self) -> dict[str, type[Component]]:
         """Part -> its type."""
         return {part.name: self.spec.types[part.type] for part in self.spec.parts}

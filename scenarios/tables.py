@@ -9,6 +9,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from ..model.errors import ScenarioError, suggestion
 
+#: Kinds of sensors.
+Kind = Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency", "current"]
+
 
 class Strict(BaseModel):
     """Base: no unknown keys, no silent conversion."""
@@ -44,9 +47,7 @@ class SensorTable(Strict):
 
     reads: str = Field(description='path in the model, for example "oil.T"')
     column: str | None = Field(None, description="column of a measured table; the sensor's own name if left out")
-    kind: Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency"] | None = Field(
-        None, description='what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power" or "efficiency"'
-    )
+    kind: Kind | None = Field(None, description="what it is: the temperature of oil, a body or the room, or a meter")
     role: Literal["given", "read"] | None = Field(None, description='"given" drives the model, "read" is compared')
     unit: str | None = Field(None, description='unit of the column, for example "degC"')
     magnitude: bool = Field(False, description="true where the column holds magnitudes")

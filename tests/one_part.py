@@ -57,6 +57,7 @@ EXAMPLES: dict[str, dict] = {
     "TorqueSplit": dict(share=0.4),
     "Efficiency": {},
     "Motor": dict(P_N=2200.0, w_N=298.5, eta=0.82, speed_share=0.35, speed_exponent=1.5),
+    "ServoMotor": dict(k_T=0.105, R_20=0.2, tau_c=0.02, d=1e-4),
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),

@@ -130,19 +130,19 @@ def _wrong(connection: Connection, ports: Mapping[str, Port], absent: Mapping[st
         yield f"joins ports of different kinds: {written}. Connect ports of one kind."
     if len(connection) < 2:
         yield "names one port only. Name at least two that meet."
-    for path in {path for path in connection if connection.count(path) > 1}:
+    for path in (path for path, times in Counter(connection).items() if times > 1):
         yield f"names {path} twice. Name it once."
 
 
 def _short_circuits(assembly: Assembly) -> list[str]:
     """Ports named in two connections that hold different storages: one body would be made of two."""
     stores = {part.name for part in assembly.parts if part.states}
-    seen: dict[str, Connection] = {}
+    seen: dict[str, set[str]] = {}
     problems = []
     for connection in assembly.connections:
-        here = _owners(connection) & stores
+        here = {path.rpartition(".")[0] for path in connection} & stores
         for path in connection:
-            before = _owners(seen.setdefault(path, connection)) & stores
+            before = seen.setdefault(path, here)
             if (one := sorted(before - here)) and (other := sorted(here - before)):
                 problems.append(
                     f"{assembly.name}: {path} is named in two connections, one with {one[0]} and one with {other[0]}: "
@@ -150,10 +150,6 @@ def _short_circuits(assembly: Assembly) -> list[str]:
                     "name a port of each in one connection."
                 )
     return problems
-
-
-def _owners(connection: Connection) -> set[str]:
-    return {path.rpartition(".")[0] for path in connection}
 
 
 def _open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:

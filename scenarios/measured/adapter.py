@@ -41,7 +41,7 @@ class Case:
     Args:
         name: of the case
         asked: rows in question
-        reference: the same machine's when healthy
+        reference: the same machine's when healthy; empty where none is known, and the rig file says what is healthy
         siblings: healthy rows of other machines of its type
     """
 
@@ -158,17 +158,15 @@ class Adapter:
         return found
 
     def _header(self, file: IO[str]) -> tuple[Iterator[list[str]], list[str]]:
-        """The rows under the names of the columns, and these: given, in the first line, or in the last of comments."""
-        first = file.readline()
-        if self.table.get("names_in") == "comment":
-            while first.startswith("#"):
-                last, first = first, file.readline()
-            line = last.lstrip("# ")
-        else:
-            line = first
+        """The rows under the names of the columns, and these: given, in the first line or in the last comment."""
+        in_comment = self.table.get("names_in") == "comment"
+        last, first = "", file.readline()
+        while first.startswith("#"):
+            last, first = first, file.readline()
+        line = last.lstrip("# ") if in_comment else first
         delimiter = ";" if line.count(";") > line.count(",") else ","
         names = self.table.get("columns") or next(csv.reader([line], delimiter=delimiter))
-        ahead = [first] if self.table.get("names_in") == "comment" or "columns" in self.table else []
+        ahead = [first] if in_comment or "columns" in self.table else []
         rows = csv.reader(_chain(ahead, file), delimiter=delimiter)
         return ([cell.replace(",", ".") for cell in row] if delimiter == ";" else row for row in rows), list(names)
 
@@ -178,13 +176,13 @@ class Adapter:
         for values in sorted(set(zip(*(rows[name].tolist() for name in names), strict=True))) if names else [()]:
             conditions = ("asked", "reference", "siblings")  # values as literals: no text of a file is code
             said = {key: entry[key].format(*map(repr, values)) for key in conditions if key in entry}
-            asked, reference = _where(said["asked"], rows), _where(said["reference"], rows)
-            if not _length(asked) or not _length(reference):
+            asked, reference = _where(said["asked"], rows), _where(said.get("reference", "False"), rows)
+            if not _length(asked) or ("reference" in said and not _length(reference)):
                 continue
             healthy = _where(said["siblings"], rows) if "siblings" in said else None
             others = sorted(set(healthy["machine"]) - set(asked["machine"])) if healthy else []
             parts = [asked, reference, *(_where(f"machine == {str(m)!r}", healthy or {}) for m in others)]
-            first, second, *rest = (self.written(part, entry) for part in parts)
+            first, second, *rest = (self.written(part, entry) if _length(part) else {} for part in parts)
             yield Case(entry["name"].format(*values), first, second, tuple(rest))
 
 
@@ -277,9 +275,10 @@ def _where(text: str, rows: Columns) -> Columns:
 
 
 def _means(columns: Columns, rows: Columns, said: Mapping[str, Any]) -> Columns:
-    """Means over the stretches in which all columns of `by` stay, with at least `least` rows each."""
+    """Means over the stretches in which all columns of `by` stay, with at least `least` rows each behind `skip`."""
     key = np.stack([rows[name] for name in said["by"]])
     cuts = np.flatnonzero(np.any(key[:, 1:] != key[:, :-1], axis=0)) + 1
-    groups = [g for g in np.split(np.arange(key.shape[1]), cuts) if len(g) >= said["least"]]
+    settled = (g[said.get("skip", 0) :] for g in np.split(np.arange(key.shape[1]), cuts))
+    groups = [g for g in settled if len(g) >= said["least"]]
     means = {name: np.array([np.nanmean(column[g]) for g in groups]) for name, column in columns.items()}
     return {"point": np.arange(1.0, len(groups) + 1), **means}

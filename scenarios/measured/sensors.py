@@ -36,7 +36,7 @@ ACCURACY: Mapping[str, tuple[float, float]] = _TABLES["accuracy"]
 #: SI unit of what a kind of sensor reads.
 SI: Mapping[str, str] = _TABLES["units"]
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
-KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
+KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power", "A": "current"}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
 NAMES: Mapping[str, tuple[str, str]] = {
     "w": ("n", "rpm"),
@@ -44,6 +44,7 @@ NAMES: Mapping[str, tuple[str, str]] = {
     "T": ("T", "C"),
     "P": ("P", "W"),
     "eta": ("eta", "pct"),
+    "i_q": ("I", "A"),
 }
 
 
@@ -254,7 +255,7 @@ class _Sensors:
         if unit not in KINDS:
             self.problems.append(
                 f"{self.card.name} sensors.{instrument.name}: {instrument.reads} is in {unit}, which no kind of sensor"
-                " reads. Read a temperature, a torque, a speed or a power."
+                " reads. Read a temperature, a torque, a speed, a power or a current."
             )
         return KINDS.get(unit, "")
 
@@ -279,7 +280,7 @@ class _Sensors:
         if not instrument.magnitude:
             return 1.0, 1.0
         sign = -1.0 if self.nominal.value(instrument.reads) < 0 else 1.0
-        return sign, -sign if kind == "torque" else sign
+        return sign, -sign if kind in ("torque", "current") else sign
 
 
 def _round(value: float, unit: str) -> float:

@@ -40,6 +40,7 @@ def helical() -> FlatModel:
 
 def test_all_are_listed() -> None:
     assert NAMES == (
+        "actuator",
         "cycloidal",
         "cycloidal_areas",
         "cycloidal_printed",

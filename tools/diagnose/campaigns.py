@@ -21,12 +21,12 @@ class CampaignFiles(Display):
     Attributes:
         adapter: the table of the campaign
         card: its card
-        cases: name of a case -> its files: the one asked, the reference, siblings
+        cases: name of a case -> its files: the one asked, the reference (None without one), siblings
     """
 
     adapter: Adapter
     card: Path
-    cases: dict[str, tuple[Path, ...]] = field(default_factory=dict)
+    cases: dict[str, tuple[Path | None, ...]] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -36,14 +36,15 @@ class CampaignFiles(Display):
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Files by case."""
         return ("case", "asked", "reference", "siblings"), [
-            (name, asked.name, healthy.name, ", ".join(p.name for p in siblings))
-            for name, (asked, healthy, *siblings) in self.cases.items()
+            (name, asked, healthy, ", ".join(siblings))
+            for name, paths in self.cases.items()
+            for asked, healthy, *siblings in [[path.name if path else "none" for path in paths]]
         ]
 
     def as_dict(self) -> dict[str, Any]:
         """What is known of it, and its files."""
         known = {key: self.adapter.table[key] for key in ("title", "source", "licence", "known", "rig")}
-        return {**known, "cases": {name: [str(p) for p in paths] for name, paths in self.cases.items()}}
+        return {**known, "cases": {name: [str(p) for p in paths if p] for name, paths in self.cases.items()}}
 
     def diagnose(self, case: str, *, quick: bool = False, seed: int = 0) -> Diagnosis:
         """Diagnose a case.
@@ -57,7 +58,9 @@ class CampaignFiles(Display):
         rig = self.adapter.rig
         given: dict[str, Any] = {"card": self.card, "quick": quick, "seed": seed}
         if self.adapter.logs:
-            return diagnose(None, rig, logs=asked, reference_logs=healthy, sibling_logs=siblings, **given)
+            return diagnose(
+                None, rig, logs=asked, reference_logs=healthy, sibling_logs=[p for p in siblings if p], **given
+            )
         return diagnose(asked, rig, reference=healthy, **given)
 
 
@@ -65,7 +68,7 @@ def campaign(name: str, folder: str | Path, out: str | Path, *, case: str = "") 
     """Card and tables of a campaign that others published, from the files that a user downloaded.
 
     Args:
-        name: of the campaign: edp, hydraulic, kelmarsh, pronostia or wind_turbine
+        name: of the campaign: dynamometer, edp, hydraulic, kelmarsh, pronostia or wind_turbine
         folder: with the downloaded files
         out: folder for card and tables
         case: only this one
@@ -83,12 +86,13 @@ def campaign(name: str, folder: str | Path, out: str | Path, *, case: str = "") 
         raise ScenarioError(f"campaign {name}: {folder} is no folder. Give the one with the downloaded files.")
     found, place = known.cases(Path(folder), case), make_folder(Path(out))
     write(place / "card.toml", known.table["card"])
-    files = {}
+    files: dict[str, tuple[Path | None, ...]] = {}
     for one in found:
         stem = "".join(c if c.isalnum() else "_" for c in one.name).strip("_")
         parts = {"": one.asked, "_reference": one.reference}
         parts |= {f"_sibling_{k}": rows for k, rows in enumerate(one.siblings, 1)}
-        files[one.name] = tuple(place / f"{stem}{ending}.csv" for ending in parts)
+        files[one.name] = tuple(place / f"{stem}{ending}.csv" if rows else None for ending, rows in parts.items())
         for path, rows in zip(files[one.name], parts.values(), strict=True):
-            write_csv(path, rows)
+            if path:
+                write_csv(path, rows)
     return CampaignFiles(known, place / "card.toml", files)

@@ -217,7 +217,7 @@ def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]
         scenario: the rig
         names: of all outputs
     """
-    every, meters = list(names), scenario.spec.of_type("Efficiency")
+    every, meters = dict.fromkeys(names), scenario.spec.of_type("Efficiency")
     found: dict[str, list[str]] = {}
     for name in every:
         part, _, key = name.rpartition(".")

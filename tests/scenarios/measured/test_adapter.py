@@ -76,6 +76,30 @@ def test_pronostia(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert load(adapter("pronostia").rig).sensors["T_bearing_C"] == "ring.T"
 
 
+#: Made up: the comments of a dynamometer, and two steps of its command by three samples, the first of them not settled.
+DYNAMOMETER = "# Test started at noon\n# g1 = 6.0; g2 = 6.0\n" + (
+    "time [s],a1 q-axis cmd [A],a1 torque [Nm],c1 vel [Hz],c1 torque [Nm],c1 fault,trd605 torque [Nm],temp 1 [C]\n"
+)
+
+
+def test_dynamometer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps of two files, each without its beginning; current by the controller's torque; no reference."""
+    monkeypatch.setitem(tables()["dynamometer"], "readings", {"by": ["command"], "skip": 1, "least": 2})  # type: ignore[index]
+    steps = [(1, 5, 0.108), (2, 10, 0.216), (0, 0, 0.0)]
+    rows = "".join(
+        f"{3 * k + i},{cmd},{6 * tau},{hz if i else 2},{tau},0,{5 * tau},30\n"
+        for k, (cmd, hz, tau) in enumerate(steps)
+        for i in range(3)
+    )
+    for hour in ("15-39-36", "15-48-50"):
+        (tmp_path / f"futek_test_21_04_2021_{hour}.csv").write_text(DYNAMOMETER + rows, encoding="utf-8")
+    (case,) = read("dynamometer", tmp_path, monkeypatch)
+    assert case.asked["n_motor_rpm"].tolist() == [300.0, 600.0] * 2
+    assert case.asked["T_output_Nm"] == pytest.approx([-0.54, -1.08] * 2)
+    assert case.asked["I_motor_A"] == pytest.approx([1.0, 2.0] * 2, rel=1e-3)
+    assert case.reference == {} and case.siblings == ()
+
+
 def test_hydraulic() -> None:
     """The record that is shipped: stages of the cooler, and states of the leak with the makers' efficiency."""
     cases = adapter("hydraulic").cases(load("hydraulic").path.parent)

@@ -16,6 +16,7 @@ KINDS = {
     "speed": ("rpm", 30 / np.pi, "speed"),
     "power": ("W", 1.0, "power"),
     "efficiency": ("%", 100.0, "efficiency"),
+    "current": ("A", 1.0, "current"),
 }
 #: Unit of a result -> ending of a channel's name, and of the name of a change of it.
 ENDINGS = {
@@ -24,6 +25,7 @@ ENDINGS = {
     "W": ("_W", "_W"),
     "rpm": ("_rpm", "_rpm"),
     "%": ("_pct", "_pct"),
+    "A": ("_A", "_A"),
 }
 
 

@@ -22,6 +22,9 @@ RUBBING = (
     "losses.clutch_drag",
     "losses.pump_power",
     "losses.pump_leak",
+    "losses.motor_drag",
+    "losses.motor_constant",
+    "losses.motor_windings",
 )
 
 
@@ -140,7 +143,7 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
 
 def torque_only(at: Context) -> Iterator[Cause]:
     """Friction between a torque transducer and the machine."""
-    measured = any(s.kind in ("torque", "power") and s.role == "read" for s in at.sensors)
+    measured = any(s.kind in ("torque", "power", "current") and s.role == "read" for s in at.sensors)
     if measured and at.roles.room and at.roles.ends:
         floor = f"{at.roles.room}.floor"
         place = Place("couplings", (), f"{at.roles.ends[0]}.flange", floor, floor, "")

@@ -60,6 +60,7 @@ KINDS: Mapping[str, Kind] = {
     "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, 1.0, BATH),
     "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.1, 0.01, 0.2, 1e-9, TARE),
     "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, 1e-9, "a stroboscope"),
+    "current": Kind("current reading", "A", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a clamp meter; its zero at rest"),
     "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a second power meter"),
 }
 #: Stable identifiers that are not named as the others.

@@ -21,6 +21,9 @@ NAMES = {
     "losses.clutch_drag": "drag of a clutch or brake",
     "losses.pump_power": "power of the pump",
     "losses.pump_leak": "leak of the pump",
+    "losses.motor_drag": "drag of the motor",
+    "losses.motor_constant": "torque constant of the motor",
+    "losses.motor_windings": "resistance of the windings",
     "losses.seal_drag": "seal drag",
     "losses.mesh_friction": "friction of the teeth",
     "losses.mesh_direction": "friction of the teeth in one direction",
@@ -55,6 +58,7 @@ KINDS = {
     "speed": "speed sensor",
     "power": "power meter",
     "efficiency": "efficiency reading",
+    "current": "current reading",
 }
 #: Faults of a sensor.
 FAULTS = {
