@@ -179,7 +179,7 @@ def new(
         "base": base,
         "foot_share": foot / (rest["efficiency.P_loss"] + (motor or 0.0)),
     }
-    return NewRig(scenario, sizes, tuple(notes(made, sizes)))
+    return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"])))
 
 
 def _oil(name: str) -> str:

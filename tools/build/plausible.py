@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -14,6 +15,8 @@ from .sizing import Unit
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
 #: Oil that seals and oil stand for long [degC].
 WARM = (20.0, 100.0)
+#: Fastest motors of such units [rpm].
+FAST = 6000
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -28,13 +31,16 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
     return (low if kW >= 1 else low - known["small"]), high
 
 
-def notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
+def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
     """What a user should know about a unit, and what its largest loss asks for where it is hot or lossy.
 
     Args:
         made: the unit
         sizes: the JSON object of `gearheat new`
+        speed: of the input [rad/s]
     """
+    if (rpm := 30 / math.pi * speed) > FAST:
+        yield f"the input turns at {rpm:,.0f} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
     eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
     height = sizing.height_of_axes(made)
     deepest = height - max(stage.reach for stage in made.stages)
