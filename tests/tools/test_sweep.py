@@ -111,7 +111,7 @@ def test_rows_are_those_of_the_command_steady(gearheat, tmp_path) -> None:
 @pytest.mark.parametrize("how", [(), ("--kind", "warmup", "--duration", "1 min")])
 def test_a_sweep_names_the_laws_outside_their_range(gearheat, tmp_path, how) -> None:
     """The row that has most of them is told with its laws."""
-    vary = ("--vary", "room.T=20..160 degC", "--grid", "3", *KEPT)
+    vary = ("--vary", "room.T=20..149 degC", "--grid", "3", *KEPT)
     answer = gearheat("sweep", "planetary", *vary, *how, "-o", tmp_path / "hot.csv", "--json", tmp_path / "hot.json")
     told = json.loads((tmp_path / "hot.json").read_text("utf-8"))["outside"]
     assert told["row"] == 3 and "kinematic_viscosity" in {o["law"] for o in told["laws"]}

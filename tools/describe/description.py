@@ -227,6 +227,10 @@ def _effects(
     except (SolveError, np.linalg.LinAlgError):
         return []
     change = SHARE * slopes * np.array([q.start for q in free])
+    place = {q.name: k for k, q in enumerate(free)}
+    for path, followed in reversed(scenario.references.items()):  # what follows moves with what it refers to
+        if path in place and followed in place:
+            change[:, place[followed]] += change[:, place[path]]
     largest = np.abs(change).max(axis=1, keepdims=True)
     weight = (np.abs(change) / np.where(largest > 0, largest, 1.0)).max(axis=0)
     order = sorted((k for k in range(len(free)) if weight[k] > LEAST), key=lambda k: (-float(f"{weight[k]:.6g}"), k))
