@@ -228,7 +228,7 @@ def _effects(
         return []
     change = SHARE * slopes * np.array([q.start for q in free])
     place = {q.name: k for k, q in enumerate(free)}
-    for path, followed in reversed(scenario.references.items()):  # what follows moves with what it refers to
+    for path, followed in reversed(list(scenario.references.items())):  # what follows moves with what it refers to
         if path in place and followed in place:
             change[:, place[followed]] += change[:, place[path]]
     largest = np.abs(change).max(axis=1, keepdims=True)
