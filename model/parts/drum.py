@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import ClassVar
 
 import casadi as ca
@@ -16,7 +16,8 @@ from ..laws.pad import fill_arc, fill_volume_share
 from ..laws.smooth import SPEED_WIDTH, V_WIDTH, Num, smooth_abs
 from .friction import Friction
 from .lubrication import MOTION, OilBath
-from .ports import AirPort, BearingLoad, Flange, HeatPort, Lubricant, OilLevel, ShaftReading
+from .motors import SuppliedMotor
+from .ports import AirPort, BearingLoad, Flange, Lubricant, OilLevel, ShaftReading
 from .thermal import Conductor, CylinderCooling
 
 #: Torque of the drum [N.m] below which the pull of its belt is rounded.
@@ -171,19 +172,13 @@ class DrumCooling(CylinderCooling):
         yield equation("enters the room", self.air.Q_flow, -self.surface.Q_flow)
 
 
-class Motor(Component):
+class Motor(SuppliedMotor):
     """Losses of an electric motor whose rotor is a shaft end: they come from the supply, beside the shaft's power.
 
     Speed and torque are read at the shaft end, whichever of them is given there. At the rated point the efficiency is
     `eta`; elsewhere it follows from a loss of the speed, which heats the stator, and one of the torque, which heats
     the windings. A motor that is driven (a loaded belt that runs down) feeds back what is left.
     """
-
-    role: ClassVar[str] = "motor"
-
-    shaft = ShaftReading(must_meet=True)
-    windings = HeatPort()
-    stator = HeatPort()
 
     P_N = Parameter("W", "rated power of the shaft", nominal=1000.0, above=0.0)
     w_N = Parameter("rad/s", "rated speed", nominal=100.0, above=0.0)
@@ -202,14 +197,7 @@ class Motor(Component):
         stator, windings = motor_loss(w, tau, *rated)
         yield equation("loss of the speed", self.P_loss_stator, stator)
         yield equation("loss of the load", self.P_loss_windings, windings)
-        yield equation("loss", self.P_loss, self.P_loss_stator + self.P_loss_windings)
-        yield equation("power from the supply", self.P_electric, w * tau + self.P_loss)
-        yield equation("loss of the speed heats the stator", self.stator.Q_flow, -self.P_loss_stator)
-        yield equation("loss of the load heats the windings", self.windings.Q_flow, -self.P_loss_windings)
-
-    def supplied_power(self) -> Iterable[Num]:
-        """What the supply gives beside the power of the shaft."""
-        return (self.P_loss,)
+        yield from super().equations()
 
 
 class ShaftFan(Component):
