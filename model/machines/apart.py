@@ -15,7 +15,7 @@ from ..core.declare import Input, Parameter, Port, State, list_declared
 from ..errors import ScenarioError, suggestion
 from ..parts import PARTS
 from ..parts.ports import AirPort, HeatPort
-from .spec import PartSpec, Spec, assemble
+from .spec import PartSpec, Spec
 
 #: Name of the piece of all parts that no other piece has.
 REST = "gearbox"
@@ -59,7 +59,7 @@ def cut_machine(spec: Spec, groups: Mapping[str, Sequence[str]]) -> Pieces:
     if problems:
         raise ScenarioError(problems)
     cut = _Cut(spec, piece_of)
-    for net in nets(assemble(spec)):
+    for net in nets(spec.assembly()):
         cut.net(net)
     if cut.problems:
         raise ScenarioError(cut.problems)

@@ -19,7 +19,6 @@ from ...fmu.related import Related
 from ...fmu.variables import Choice, Item, drop_idle, start_choice
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, SolveError, suggestion
-from ...model.machines.spec import assemble
 from ...model.run.point import point
 from ...model.run.rows import evaluate_at
 from ...model.run.steady import steady
@@ -122,7 +121,7 @@ def export_rig(asked: Asked) -> Exported:
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     sets = sets_of_oils(setting, kept, told=asked.with_origins, hidden=hidden)
     options["others"] = Related(sets, experiment(flat, duty, run))
-    options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
+    options["drawn"] = figures_of(setting.spec.assembly(), flat, start, run)
     with progress_bar() as options["progress"]:
         write_fmu(
             setting, flat, asked.out, hidden=hidden, verify=lambda fmu: check_fmu(fmu, flat, duty, run), **options
@@ -170,7 +169,7 @@ def write_fmu(
         hidden: parameters that are constants of the model
         options: of `gearheat.fmu.export.export`
     """
-    assembly = assemble(scenario.spec)
+    assembly = scenario.spec.assembly()
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
     known["choices"] = choices_of(scenario, hidden)
     known["parts"] = tuple(text_of(part, hidden) for part in assembly.parts)

@@ -18,10 +18,8 @@ from ...fmu.equations import effective
 from ...fmu.related import PARAMETERS
 from ...fmu.ssp import Element, End, System, ssp
 from ...model.core.flat import FlatModel, Quantity
-from ...model.core.flatten import flatten
 from ...model.errors import ScenarioError
 from ...model.machines.apart import Pieces, cut_machine
-from ...model.machines.spec import assemble
 from ...model.run.rows import evaluate_at
 from ...scenarios.scenario import Scenario
 from ..show.console import lasting, progress_bar, writable
@@ -109,7 +107,7 @@ def split_rig(setting: Scenario, groups: Mapping[str, Sequence[str]], start: Map
     whole = flat_of(setting)
     known = {**{q.name: q.start for q in (*whole.states, *whole.inputs)}, **start}
     pieces = cut_machine(setting.spec, groups)
-    flats = {name: flatten(assemble(spec)) for name, spec in pieces.specs.items()}
+    flats = {name: spec.flat() for name, spec in pieces.specs.items()}
     starts = {
         name: {q.name: known[q.name] for q in (*flat.states, *flat.inputs) if q.name in known}
         for name, flat in flats.items()

@@ -13,7 +13,6 @@ from ...model.core.component import Component
 from ...model.core.flat import Quantity
 from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.laws.oil import density, kinematic_viscosity, pressure_viscosity
-from ...model.machines.spec import assemble
 from ...model.parts.contacts import TellsFilmContact
 from ...model.parts.lubrication import LubricantProperties
 from ...model.run.steady import steady
@@ -234,7 +233,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     Raises:
         ScenarioError: no such part, a part without a contact, several parts, or a part without load
     """
-    assembly = assemble(scenario.spec)
+    assembly = scenario.spec.assembly()
     told = {p.name: p for p in assembly.parts if isinstance(p, TellsFilmContact)}
     chosen = told[_choose_part(scenario, part, tuple(told))]
     flat = flat_of(scenario)

@@ -10,7 +10,7 @@ from ...model.core.component import Component, Equation, equation
 from ...model.core.declare import Output
 from ...model.errors import Problems, ScenarioError
 from ...model.laws.oil import T_0
-from ...model.machines.spec import PartSpec, Spec, assemble
+from ...model.machines.spec import PartSpec, Spec
 from ...model.parts.flanks import Flanks, flanks_of
 from ...model.parts.gears import GearPair
 from ...model.parts.lubrication import LubricantProperties
@@ -171,7 +171,7 @@ def _meshes(scenario: Scenario, K: float, scuffing: int, micropitting: int) -> I
     Raises:
         ScenarioError: there is none, or one carries nothing or stands still
     """
-    parts = {part.name: part for part in assemble(scenario.spec).parts}
+    parts = {part.name: part for part in scenario.spec.assembly().parts}
     toothed = [part for part in parts.values() if isinstance(part, GearPair | PlanetarySet)]
     if not toothed:
         raise ScenarioError(f"{scenario.name}: no part has involute teeth. Take a rig with a gear pair or planets.")

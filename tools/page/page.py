@@ -17,7 +17,6 @@ from ...fmu.web import module, with_checks
 from ...model.core.connect import nets
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, Problems, ScenarioError, suggestion
-from ...model.machines.spec import assemble
 from ...model.units import show_unit, to_si
 from ...scenarios.csv_table import in_si, numbers, read_cells, scale, split_unit
 from ...scenarios.given import RigLike, Settings, scenario_of
@@ -239,7 +238,7 @@ def _ways_out(scenario: Scenario, outputs: set[str]) -> list[str]:
     """Outputs that are the heat to the rooms, each way and kind by itself."""
     rooms = scenario.spec.of_type("Room")
     found: list[str] = []
-    for net in nets(assemble(scenario.spec)):
+    for net in nets(scenario.spec.assembly()):
         owners = [port.name.rpartition(".")[0] for port in net]
         if not any(owner in rooms for owner in owners):
             continue

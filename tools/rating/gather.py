@@ -9,7 +9,7 @@ from ...model.core.component import Component, Equation, equation
 from ...model.core.declare import Output, Port, list_declared
 from ...model.errors import Problems
 from ...model.laws.oil import density, kinematic_viscosity
-from ...model.machines.spec import PartSpec, Spec, assemble
+from ...model.machines.spec import PartSpec, Spec
 from ...model.parts.equivalent import CylindricalPair, pair_of
 from ...model.parts.ports import AirPort, BearingLoad, Flange, HeatPort
 from ...model.parts.shaft import Efficiency
@@ -121,7 +121,7 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     Raises:
         ScenarioError: the rig has no cylindrical gear pair, not one oil bath, or not the gears that `dips` names
     """
-    parts = {part.name: part for part in assemble(scenario.spec).parts}
+    parts = {part.name: part for part in scenario.spec.assembly().parts}
     pairs = {name: pair for name, part in parts.items() if (pair := pair_of(part)) is not None}
     baths = [name for name, part in parts.items() if part.role == "bath"]
     rooms = scenario.spec.of_type(Room.__name__)

@@ -12,7 +12,6 @@ import numpy as np
 from ...model.core.component import Component
 from ...model.core.flat import FlatModel
 from ...model.errors import DataError, ScenarioError
-from ...model.machines.spec import assemble
 from ...model.parts.contacts import ContactTable, TellsContacts, TellsFilmContact
 from ...model.parts.shaft import Efficiency
 from ...model.run.point import point
@@ -179,7 +178,7 @@ def contacts_part(scenario: Scenario) -> tuple[TellsContacts, dict[str, float]]:
     Raises:
         ScenarioError: no part does, or several do
     """
-    parts = [part for part in assemble(scenario.spec).parts if isinstance(part, TellsContacts)]
+    parts = [part for part in scenario.spec.assembly().parts if isinstance(part, TellsContacts)]
     if not parts:
         kinds = ", ".join(sorted(kind for kind, cls in scenario.spec.types.items() if hasattr(cls, "contact_table")))
         raise ScenarioError(

@@ -12,7 +12,7 @@ from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel
 from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
-from ...model.machines.spec import Spec, assemble
+from ...model.machines.spec import Spec
 from ...scenarios.film_map import find_map, names_map
 from ...scenarios.given import Settings, assignments_of
 from ...scenarios.housing import oil_problems
@@ -120,7 +120,7 @@ def _derive_values(spec: Spec, named: Iterable[str]) -> dict[str, float]:
     following = [name for name in named if (d := parameter_of(spec, name)) is not None and d.derived is not None]
     if not following:
         return {}
-    parts = {part.name: part for part in assemble(spec).parts}
+    parts = {part.name: part for part in spec.assembly().parts}
     split = [(name, *name.rpartition(".")[::2]) for name in following]
     return {name: parts[part].values[key] for name, part, key in split if key in parts[part].derived}
 
