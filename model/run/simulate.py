@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +70,7 @@ def simulate(
     begin = point(flat, values, start, who="simulate", taken=schedule.values)
     stretches = _stretches(flat, schedule, begin.u)
     rows = _rows(schedule, stretches) if times is None else _pick_rows(np.asarray(times, dtype=float), stretches)
-    u = _inputs(stretches, rows)
+    u = np.hstack([stretch.inputs(rows.time[here]) for stretch, here in rows.of(stretches)])
     if through is not None and (found := through(begin, rows.time)) is not None:
         x, evaluated, energy = found
         last = x[:, -1]
@@ -89,8 +89,7 @@ def _integrate(
     run: Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]] = getattr(transient, method)
     x, z = (np.empty((len(group), len(rows.time))) for group in (flat.states, flat.algebraic))
     now, energy = begin.x, np.zeros(2)
-    first = np.searchsorted(rows.stretch, np.arange(len(stretches) + 1))
-    for stretch, here in zip(stretches, map(slice, first, first[1:]), strict=False):
+    for stretch, here in rows.of(stretches):
         grid = _merge_times(stretch.time, rows.time[here])
         try:
             path, algebraic, gained = run(stretch, grid, now)
@@ -111,6 +110,11 @@ class _Rows:
 
     time: np.ndarray
     stretch: np.ndarray
+
+    def of(self, stretches: Sequence[Stretch]) -> Iterator[tuple[Stretch, slice]]:
+        """The rows of each stretch."""
+        first = np.searchsorted(self.stretch, np.arange(len(stretches) + 1))
+        return zip(stretches, map(slice, first, first[1:]), strict=False)
 
 
 def _problems(
@@ -145,17 +149,6 @@ def _stretches(flat: FlatModel, schedule: Schedule, u: np.ndarray) -> list[Stret
     if not found:
         raise ScenarioError(f"simulate: the duty lasts no time (it stays at {schedule.start:g} s). Give it a duration.")
     return found
-
-
-def _inputs(stretches: Sequence[Stretch], rows: _Rows) -> np.ndarray:
-    """Inputs at the rows, a column each."""
-    time, table = np.concatenate([s.time for s in stretches]), np.hstack([s.table for s in stretches])
-    first = np.cumsum([0, *(len(s.time) for s in stretches)])
-    here = np.searchsorted(time, rows.time, side="right") - 1
-    here = np.clip(here, first[rows.stretch], first[rows.stretch + 1] - 2)
-    slope = (table[:, here + 1] - table[:, here]) / (time[here + 1] - time[here])
-    inside: np.ndarray = table[:, here] + slope * (rows.time - time[here])
-    return np.where(rows.time == time[here + 1], table[:, here + 1], inside)
 
 
 def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:

@@ -11,7 +11,6 @@ import numpy as np
 from ...model.core.declare import Port, State, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
-from ...model.machines.spec import assemble
 from ...model.run.result import Result
 from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
@@ -130,7 +129,7 @@ class SteadyState(Quantities):
         """Where the heat comes from and where it goes, as a Sankey diagram."""
         from ..show.sankey import heat_picture
 
-        assembly = assemble(self.scenario.spec)
+        assembly = self.scenario.spec.assembly()
         with_flows = flatten(assembly, flows=heat_flows(assembly))
         guess = {q.name: self[q.name] for q in self.flat.states}
         there = solve(with_flows, conditions(self.scenario, with_flows), guess=guess)
@@ -182,16 +181,17 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
         note(f"{scenario.name}: steady state of {len(flat.states)} states")
     found = solve(flat, conditions(scenario, flat))
     given = [f"{end}.{quantity}" for end, own in scenario.given.items() for quantity in own]
-    signs = [np.sign(np.prod([point.operating_point.get(name, 0.0) for name in given])) for point in (usual, scenario)]
-    backward = len(given) == 2 and bool(signs[0] * signs[1] < 0)
+    before, now = ({path: at.operating_point.get(path, 0.0) for path in given} for at in (usual, scenario))
     if scenario.drives:
         backward = float(found[f"{scenario.drives}.P"][0]) < 0
-    units = {"w": "rad/s", "tau": "N.m", "load": "N.m"}
-    both = [(path, usual.operating_point.get(path, 0.0), scenario.operating_point.get(path, 0.0)) for path in given]
+    else:
+        backward = len(given) == 2 and bool(np.prod(np.sign([*before.values(), *now.values()])) < 0)
+    units = {path: flat.quantity(path).unit for path in given}
     far = [
-        f"{path} = {text(now, unit)} is {now / before:.3g} times that of the rig file, {text(before, unit)}"
-        for path, before, now in both
-        if before and abs(now / before) > FAR and (unit := units[path.rpartition(".")[2]])
+        f"{path} = {text(now[path], units[path])} is {now[path] / before[path]:.3g} times that of the rig file,"
+        f" {text(before[path], units[path])}"
+        for path in given
+        if before[path] and abs(now[path] / before[path]) > FAR
     ]
     return SteadyState(scenario, flat, found, backward, tuple(far))
 

@@ -46,12 +46,14 @@ class Joint:
     """Hypotheses with the same causes but for members of a class, with and without a remainder.
 
     Args:
+        key: their classes
         causes: ids of the most probable member; none: nothing is wrong, or `UNEXPLAINED` alone
         classes: for each of them the members of its class that fit, the most probable first
         chance: of all of them together
         best: the most probable one
     """
 
+    key: Key
     causes: tuple[str, ...]
     classes: tuple[tuple[str, ...], ...]
     chance: Chance
@@ -110,9 +112,7 @@ def decide(found: Found) -> Decision:
 
 def _whatever_else(joint: Joint, found: Found, chances: _Chances) -> Joint:
     """The same causes with the chance that they act, whether or not others act as well."""
-    keys = answer_keys(found)
-    own = set(keys[next(i for i, h in enumerate(found.hypotheses) if h is joint.best)])
-    return replace(joint, chance=chances.of(np.array([own <= set(key) for key in keys])))
+    return replace(joint, chance=chances.of(np.array([{*joint.key} <= {*key} for key in answer_keys(found)])))
 
 
 def temper(found: Found) -> Found:
@@ -199,7 +199,7 @@ def _join(found: Found, chances: _Chances) -> list[Joint]:
         members = [(found.hypotheses[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)]
         best = max(members, key=lambda m: m[1])[0]
         classes = tuple(_class(c, members, found) for c in _named(best))
-        joints.append(Joint(_named(best), classes, chances.of(mine), best))
+        joints.append(Joint(key, _named(best), classes, chances.of(mine), best))
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 
