@@ -15,6 +15,8 @@ from .sizing import Unit
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
 #: Oil that seals and oil stand for long [degC].
 WARM = (20.0, 100.0)
+#: How much warmer than at the name plate a hall is for which makers rate units [K].
+HALL = 20.0
 #: Fastest motors of such units [rpm].
 FAST = 6000
 #: Efficiency below which standard sizes do not fit the power.
@@ -48,6 +50,11 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
         yield (
             f"the oil stands at {1000 * level:.0f} mm, expected {1000 * deepest:.0f} mm, where the largest wheel dips,"
             f" to {1000 * height:.0f} mm, where the axes are. Change --oil-volume."
+        )
+    if (bare := sizes["without_fan"]) and bare["oil_degC"] + HALL < WARM[1]:
+        yield (
+            f"it needs no fan: without one the oil is at {bare['oil_degC']:.1f} degC, the efficiency"
+            f" {100 * bare['efficiency']:.2f} %. Leave out --fan, or give the housing that has one by --housing."
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:
