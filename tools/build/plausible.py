@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ...model.files import tables
 from . import sizing
 from .bearings import LIFE
@@ -26,11 +28,15 @@ POOR = 0.4
 def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, float]:
     """Efficiencies [%] of units of such stages, power and ratio."""
     kinds, known = stages.split(",") if isinstance(stages, str) else list(stages), MACHINES["efficiency"]
-    if kinds == ["worm"]:
-        low, high = next(band for most, band in MACHINES["worm"].items() if ratio <= float(most))
+    if kinds[-1] == "worm":
+        slow = sizing.last_ratio(kinds, ratio)
+        ends = [float(most) for most in MACHINES["worm"]]
+        low, high = (float(np.interp(slow, ends, side)) for side in zip(*MACHINES["worm"].values(), strict=True))
+        if len(kinds) > 1:
+            low, high = (end * fast / 100 for end, fast in zip((low, high), known[str(len(kinds) - 1)], strict=True))
     else:
         low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
-    return (low if kW >= 1 else low - known["small"]), high
+    return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
 
 
 def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:

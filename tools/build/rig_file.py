@@ -37,9 +37,10 @@ COOLED = 50.0
 RIBBED = 0.25
 #: Height of a rib over its thickness [1].
 RIBS = 2.5
-#: Speed of the air along a housing in a room with little draught, and that for which a maker rates units with
-#: a motor that cools itself (Rossi, UTD.123.2019-10, 7.16) [m/s].
-DRAUGHT, BLOWN = 0.3, 1.25
+#: Speed of the air along a housing in a room with little draught [m/s].
+DRAUGHT = 0.3
+#: That for which a maker rates units with a motor that cools itself (Rossi, UTD.123.2019-10, 7.16) [m/s].
+BLOWN = 1.25
 #: What a unit stands on.
 BASES = ("concrete", "steel", "flange", "free")
 #: Bolts of a foot or flange.
