@@ -8,6 +8,7 @@ import re
 import casadi as ca
 import pytest
 from for_each import thin
+from gearheat.model.errors import ScenarioError
 from gearheat.model.parts import TwoGearSupport
 from gearheat.model.units import si_of
 from gearheat.scenarios.entries import catalogue
@@ -255,7 +256,7 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     answer = gearheat("new", "a", *plate)
     assert answer.code == 2
     assert 'no stage "warm". Stages: spur, helical, bevel, worm, planetary.' in answer.err
-    assert "Give 3 stages or more" in answer.err
+    assert "Give --stages helical,helical,helical." in answer.err
     assert not path.exists()
 
 
@@ -319,6 +320,19 @@ def test_what_a_refusal_advises_works(gearheat, tmp_path):
             other = [item for pair in (plate | {option: value.format(scaled)}).items() for item in pair]
             path = tmp_path / f"{option}{code}.toml"
             assert gearheat("new", "a", *other, "-o", path).code == code, (option, factor)
+
+
+@pytest.mark.parametrize(
+    ("stages", "ratio"),
+    [("worm", 100), ("worm", 3), ("planetary", 20), ("spur", 90), ("helical,worm", 2000), ("bevel", 6), ("bevel", 200)],
+)
+def test_the_stages_that_a_refusal_names_go(stages, ratio):
+    plate = 2000.0, 1450 * math.pi / 30
+    with pytest.raises(ScenarioError) as refused:
+        sizing.unit(stages.split(","), ratio, *plate)
+    named = re.search(r"Give --stages (\S+)\.", str(refused.value)).group(1).split(",")
+    assert sizing.unit(named, ratio, *plate).ratio == pytest.approx(ratio, rel=0.06)
+    assert ("worm" in named) == ("worm" in stages and ratio > 60) and ("bevel" in named) == ("bevel" in stages)
 
 
 def test_a_worm_shaft_has_bearings_and_a_seal_of_its_size(gearheat, tmp_path):

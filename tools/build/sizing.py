@@ -217,10 +217,9 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
     )
     if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
-        needed = max(1, math.ceil(math.log(max(ratio, 1.01)) / math.log(most)))
         problems.append(
             f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
-            f" to {most:.3g}. Give {needed} stages or more."
+            f" to {most:.3g}. {_other_stages(kinds, ratio)}"
         )
     if bearings not in CHOICES:
         raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
@@ -239,6 +238,20 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         )
     if problems:
         raise ScenarioError(problems)
+
+
+def _other_stages(kinds: Sequence[str], ratio: float) -> str:
+    """Stages that have a ratio where others have not, with a worm or a bevel stage as wanted."""
+    if ratio < 1:
+        return "Give a ratio of 1 or more: the input is the faster shaft, and the output may drive."
+    kept = next((kind for kind in (kinds[-1], kinds[0]) if kind in (LAST, "bevel")), None)
+    if kept is None or ratio < LEAST.get(kept, 1.0):
+        kept, left = None, ratio
+    else:
+        left = ratio / MOST[kept]
+    gears = ["helical"] * max(math.ceil(math.log(max(left, 1.0)) / math.log(MOST["helical"]) - 1e-9), kept is None)
+    named = {LAST: [*gears, LAST], "bevel": ["bevel", *gears]}.get(kept or "", gears)
+    return f"Give --stages {','.join(named)}."
 
 
 def last_ratio(kinds: Sequence[str], ratio: float) -> float:
