@@ -31,6 +31,7 @@ import uuid
 import zipfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..model.core.flat import FlatModel
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
@@ -100,7 +101,12 @@ def export(
     """
     path, chosen = Path(path), platforms(platform, fmi)
     kept, variables = _prepare_model(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
-    told_of = {"owner": owner, "with_sources": with_sources, "uncertain": uncertain, "real_time": real_time}
+    told_of: dict[str, Any] = {
+        "owner": owner,
+        "with_sources": with_sources,
+        "uncertain": uncertain,
+        "real_time": real_time,
+    }
     code, told, directions = _code(kept, variables, fmi, **told_of)
     about = About(sources or {}, uncertainties or {}, figures or {}, parts, _idle(flat, kept), directions, with_sources)
     content = {
