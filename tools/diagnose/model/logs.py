@@ -200,13 +200,13 @@ class Filter:
         found = {"log_likelihood": np.zeros(n), "slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
         found |= {name: np.full(data.read.shape, np.nan) for name in ("error", "variance", "shown")}
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
-
-        def through(first: int, last: int) -> None:
-            share_rows(lambda a, b: int(run(*places, first + a, first + b)), last - first, SIDE, 0)
-
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
-            through(first, last)
+
+            def followed(begin: int, end: int, at: int = first) -> int:
+                return int(run(*places, at + begin, at + end))
+
+            share_rows(followed, last - first, SIDE, 0)
             progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
         return found
