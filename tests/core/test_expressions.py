@@ -1,4 +1,4 @@
-"""The direct way to CasADi's arithmetic ends where its own way does."""
+"""The direct way to CasADi's arithmetic ends where its own way does; a part of equal values is made once."""
 
 import operator
 from collections.abc import Callable
@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 from for_each import for_each
 from gearheat.model import expressions
+from gearheat.model.core.component import make
+from gearheat.model.errors import ScenarioError
+from small_parts import Conductor
 
 expressions.shorten()
 OPERATORS = {name: getattr(operator, name) for name in (*expressions.ARITHMETIC, *expressions.COMPARISON)}
@@ -67,3 +70,13 @@ def test_functions_of_two(name: str) -> None:
 def test_other_operands_go_casadis_own_way(other: Any) -> None:
     for name, direct in OPERATORS.items():
         assert str(direct(Y, other)) == str(own(name)(Y, other))
+
+
+def test_a_part_is_made_once_of_equal_values() -> None:
+    first = make(Conductor, "foot", {"G": 3.0})
+    assert make(Conductor, "foot", {"G": 3.0}) is first and first.values["G"] == 3.0
+    for other in (make(Conductor, "foot", {"G": 4.0}), make(Conductor, "wall", {"G": 3.0})):
+        assert other is not first
+    for _ in range(2):  # what is refused is refused again
+        with pytest.raises(ScenarioError, match="G is missing"):
+            make(Conductor, "foot", {})
