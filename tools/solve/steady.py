@@ -95,7 +95,7 @@ class SteadyState(Quantities):
         if warm:
             hottest = max(warm, key=lambda body: warm[body])
             lines.append(f"hottest: {hottest} {text(warm[hottest], 'K', 3)}")
-        for bath in (part for part in warm if self.scenario.types[part].role == "bath"):
+        for bath in baths(self.scenario):
             left = RATED - warm[bath]
             lines.append(
                 f"{bath} {text(warm[bath], 'K', 3)}, {abs(left):.0f} K {'below' if left > 0 else 'above'} {END}"
@@ -134,7 +134,8 @@ class SteadyState(Quantities):
         guess = {q.name: self[q.name] for q in self.flat.states}
         there = solve(with_flows, conditions(self.scenario, with_flows), guess=guess)
         values = {name: float(column[0]) for name, column in there.columns.items()}
-        return heat_picture(self.scenario.name, heat_paths(assembly, values), values)
+        kinds = {part.name: part.role for part in assembly.parts}
+        return heat_picture(self.scenario.name, heat_paths(assembly, values), values, kinds)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the losses of the parts as bars.
@@ -149,6 +150,11 @@ class SteadyState(Quantities):
         panel.invert_yaxis()
         panel.set(title=self.title, xlabel="loss [W]")
         return panel
+
+
+def baths(scenario: Scenario) -> list[str]:
+    """Parts that hold an oil with a temperature of its own."""
+    return [name for name, kind in scenario.types.items() if kind.role == "bath" and "T" in list_declared(kind, State)]
 
 
 def _kilowatts(P: float) -> str:
