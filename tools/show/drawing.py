@@ -63,7 +63,9 @@ def marks_on(figure: Figure, panel: Axes, told: Iterable[tuple[float, float, str
     """Places on a panel, in its own coordinates, with what a page says there, as shares of the finished figure."""
     figure.draw_without_rendering()
     to_figure = panel.transData + figure.transFigure.inverted()
-    return [(round(x, 4), round(1 - y, 4), words) for (x, y), words in ((to_figure.transform(t[:2]), t[2]) for t in told)]
+    return [
+        (round(x, 4), round(1 - y, 4), words) for (x, y), words in ((to_figure.transform(t[:2]), t[2]) for t in told)
+    ]
 
 
 def hovering(figure: Figure, marks: Iterable[Mark]) -> Markup:

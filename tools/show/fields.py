@@ -142,7 +142,9 @@ def _contours(panel: Axes, over: Sequence[Field], one: Field) -> None:
     if one.limit is not None and low < one.limit < high:
         panel.tricontour(x, y, values, levels=[one.limit], colors="#c00000", linewidths=2.5)
     if (at := [f.point for f in over if f.point is not None])[1:]:
-        panel.plot(at[0] * over[0].scale, at[1] * over[1].scale, "P", markersize=11, color="black", mec="white", mew=1.2)
+        panel.plot(
+            at[0] * over[0].scale, at[1] * over[1].scale, "P", markersize=11, color="black", mec="white", mew=1.2
+        )
 
 
 def courses(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> Picture:

@@ -122,7 +122,7 @@ def _grouped(paths: Sequence[Path], kinds: Mapping[str, str]) -> tuple[list[Path
     for path in paths:
         if path.begins in made:
             made[path.begins] += path.Q_flow
-    small = [name for name, Q in made.items() if kinds.get(name) and Q < SMALL * sum(made.values())]
+    small = [name for name, Q in made.items() if kinds.get(name) and SMALL * sum(made.values()) > Q]
     called: dict[str, str] = {}
     for kind in dict.fromkeys(kinds[name] for name in small):
         alike = [name for name in small if kinds[name] == kind]
