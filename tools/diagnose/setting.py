@@ -14,8 +14,7 @@ from ...model.machines.roles import Roles
 from ...model.machines.spec import Spec
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.lubrication import lubricate, oils_of
-from ...scenarios.measured.nominal import Nominal
-from ...scenarios.measured.sensors import drive_by
+from ...scenarios.measured.nominal import Nominal, drive_by
 from ...scenarios.measured.table import Campaign
 from ...scenarios.nuisances import Nuisance, nuisances
 from ...scenarios.scenario import Scenario
