@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal, cast
 
@@ -10,6 +11,7 @@ import gearheat as gh
 import typer
 from typer.core import TyperGroup
 
+from ...model.errors import GearheatError
 from ..show import console
 
 #: Exit code where a number is not reproduced.
@@ -31,6 +33,8 @@ def bench(
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty, "scale": scale}
     if contact:
         console.use_one_thread()
+    if find_spec("gearheat.tools.bench") is None:
+        raise GearheatError("bench: stands in a checkout alone, see CONTRIBUTING.md; an installed gearheat has none.")
     from ..bench import bench
 
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)

@@ -59,13 +59,13 @@ def legend(figure: Figure, panel: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=9)
 
 
-def marks_on(figure: Figure, panel: Axes, told: Iterable[tuple[float, float, str]]) -> list[Mark]:
-    """Places on a panel, in its own coordinates, with what a page says there, as shares of the finished figure."""
+def marks_on(figure: Figure, told: Iterable[tuple[Axes, float, float, str]]) -> list[Mark]:
+    """Places on panels, in their own coordinates, with what a page says there, as shares of the finished figure."""
     figure.draw_without_rendering()
-    to_figure = panel.transData + figure.transFigure.inverted()
-    return [
-        (round(x, 4), round(1 - y, 4), words) for (x, y), words in ((to_figure.transform(t[:2]), t[2]) for t in told)
-    ]
+    figure.set_layout_engine("none")  # laid out: it takes as long as to draw
+    back = figure.transFigure.inverted()
+    places = [(*(panel.transData + back).transform((x, y)), words) for panel, x, y, words in told]
+    return [(round(float(x), 4), round(1 - float(y), 4), words) for x, y, words in places]
 
 
 def hovering(figure: Figure, marks: Iterable[Mark]) -> Markup:

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...model.units import from_si
 from .drawing import COLOURS, empty, legend, marks_on
-from .picture import Mark, Picture
+from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3
@@ -94,7 +94,9 @@ def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture
         panel.set(title=one.title, xlabel=over[0].title)
     for panel in panels[len(drawn) :]:
         panel.set_visible(False)
-    marks = [mark for panel, one in zip(panels, drawn, strict=False) for mark in _told(panel, over, one)]
+    marks = marks_on(
+        figure, [told for panel, one in zip(panels, drawn, strict=False) for told in _told(panel, over, one)]
+    )
     ends = [(f.name, float(np.nanmin(f.values)), float(np.nanmax(f.values)), f.unit) for f in (*over, *drawn)]
     note = "Point at the picture to read values."
     note += " The cross is the operating point." if all(f.point is not None for f in over) else ""
@@ -102,7 +104,7 @@ def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture
     return Picture(figure, title, note, ("name", "low", "high", "unit"), ends, marks=marks)
 
 
-def _told(panel: Axes, over: Sequence[Field], one: Field) -> list[Mark]:
+def _told(panel: Axes, over: Sequence[Field], one: Field) -> list[tuple[Axes, float, float, str]]:
     """What is said at the points of a panel."""
     good = np.flatnonzero(np.isfinite(one.values))
     good = good[:: max(1, -(-len(good) // MOST))]
@@ -110,7 +112,7 @@ def _told(panel: Axes, over: Sequence[Field], one: Field) -> list[Mark]:
     words = ["\n".join(f"{f.title.partition(' [')[0]} {f.shown[i]:.4g} {f.shown_unit}" for f in axes) for i in good]
     places = over[1].shown if len(over) == 2 else one.shown
     points = zip(over[0].shown[good], places[good], words, strict=True)
-    return marks_on(panel.figure.figure, panel, [(float(x), float(y), text) for x, y, text in points])
+    return [(panel, float(x), float(y), text) for x, y, text in points]
 
 
 def _lines(panel: Axes, over: Sequence[Field], one: Field) -> None:

@@ -108,7 +108,7 @@ def machine_picture(
             panel.add_patch(Rectangle((x1, y - 0.09), 0.25, 0.18, facecolor=colour, edgecolor=EDGE, linewidth=0.5))
         panel.text(x1 + 0.4, y, line, fontsize=8, va="center", ha="left")
     note = "Shafts in one plane, teeth in true ratios, the rest not to scale. Point at a number to read what it is."
-    return Picture(figure, title, note, marks=marks_on(figure, panel, drawing.marks))
+    return Picture(figure, title, note, marks=marks_on(figure, [(panel, *told) for told in drawing.marks]))
 
 
 #: Roles of parts that have a number even where nothing of them is drawn in place.

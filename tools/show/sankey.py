@@ -109,7 +109,7 @@ def sankey(
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=9)
     if not places:
         panel.text(width / 2, height / 2, "no heat flows", ha="center", va="center", fontsize=9)
-    return figure, marks_on(figure, panel, found)
+    return figure, marks_on(figure, [(panel, *told) for told in found])
 
 
 def _colour(kind: str) -> str:
