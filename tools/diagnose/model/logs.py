@@ -202,7 +202,11 @@ class Filter:
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
-            share_rows(lambda a, b, at=first: int(run(*places, at + a, at + b)), last - first, SIDE, 0)
+
+            def followed(begin: int, end: int, at: int = first) -> int:
+                return int(run(*places, at + begin, at + end))
+
+            share_rows(followed, last - first, SIDE, 0)
             progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
         return found
