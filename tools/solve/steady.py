@@ -95,7 +95,7 @@ class SteadyState(Quantities):
         if warm:
             hottest = max(warm, key=lambda body: warm[body])
             lines.append(f"hottest: {hottest} {text(warm[hottest], 'K', 3)}")
-        for bath in baths(self.scenario):
+        for bath in (part for part in warm if self.scenario.types[part].role == "bath"):
             left = RATED - warm[bath]
             lines.append(
                 f"{bath} {text(warm[bath], 'K', 3)}, {abs(left):.0f} K {'below' if left > 0 else 'above'} {END}"
