@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal, cast
 
@@ -11,7 +10,6 @@ import gearheat as gh
 import typer
 from typer.core import TyperGroup
 
-from ...model.errors import GearheatError
 from ..show import console
 
 #: Exit code where a number is not reproduced.
@@ -33,8 +31,6 @@ def bench(
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty, "scale": scale}
     if contact:
         console.use_one_thread()
-    if find_spec("gearheat.tools.bench") is None:
-        raise GearheatError("bench: stands in a checkout alone, see CONTRIBUTING.md; an installed gearheat has none.")
     from ..bench import bench
 
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)
@@ -43,9 +39,9 @@ def bench(
 def docs(
     context: typer.Context,
     out: Path,
-    run: Literal["quick", "all", "none"] = "none",
+    run: Literal["quick", "all", "none"] = "quick",
 ) -> None:
-    """Build the documentation as a web site; with --run its code blocks are run and compared with what they print."""
+    """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
     import gearheat as gh
 
     from ..docs import build

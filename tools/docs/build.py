@@ -45,7 +45,6 @@ def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run:
         raise GearheatError('docs: Sphinx is not installed. Run pip install "gearheat[docs]".')
     if run != "none" and (found := run_pages(program, run == "all")):
         raise GearheatError(found)
-    note(f"{len(list(PAGES.rglob('*.md')))} pages and the reference; code blocks are run with --run quick or all")
     build(program, public, folder(out))
     note(f"{out / 'index.html'}")
 
@@ -61,13 +60,11 @@ def build(program: TyperGroup, public: Mapping[str, Any], out: Path) -> None:
 
     with tempfile.TemporaryDirectory() as work:
         source = gather(program, public, Path(work) / "source")
-        note("building with Sphinx")
         static = source / "static"
         static.mkdir()
         shutil.copy(Path(__file__).with_name("narrow.css"), static)
         own = dict.fromkeys(("version", "release"), version("gearheat"))
-        theme = "furo" if find_spec("furo") else "alabaster"
-        settings = {**TABLES["sphinx"], **own, "html_theme": theme, "html_static_path": [str(static)]}
+        settings = {**TABLES["sphinx"], **own, "html_static_path": [str(static)]}
         places = (str(source), None, str(out), str(Path(work) / "trees"), "html")
         try:
             app = Sphinx(*places, confoverrides=settings, status=None, warningiserror=True, exception_on_warning=False)
@@ -86,15 +83,9 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for title, found in (
-        ("parts, laws and rigs", reference.pages()),
-        ("commands and modules", _list_program_pages(program, public)),
-        ("gallery", _gallery(program, place)),
-    ):
-        note(f"writing {title}")
-        for name, text in found:
-            (place / name).parent.mkdir(parents=True, exist_ok=True)
-            (place / name).write_text(text, encoding="utf-8")
+    for name, text in (*reference.pages(), *_list_program_pages(program, public)):
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
     for path in source.rglob("*.md"):
         path.write_text(fill_blocks(add_captions(path.read_text(encoding="utf-8"))), encoding="utf-8")
@@ -123,24 +114,10 @@ def _list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Itera
         Path("duty.csv").write_text(DUTY, encoding="utf-8")
         answers = {command: _keys_of(program, command) for command in TABLES["asked"]}
     yield "json.md", page("json", answers=answers, schema=schema)
-    members = list(_public(public))
-    yield "api/index.md", page("api", modules=TABLES["modules"], members=members, public=public)
-    yield "api/gearheat.md", page("public", members=members)
+    yield "api/index.md", page("api", modules=TABLES["modules"])
+    yield "api/gearheat.md", page("public", members=list(_public(public)))
     for module in TABLES["modules"]:
         yield f"api/{module}.md", page("module", name=module)
-
-
-def _gallery(program: TyperGroup, place: Path) -> Iterator[tuple[str, str]]:
-    """The page of pictures, each drawn by the command that stands below it."""
-    drawn = place / "gallery"
-    drawn.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        Path("duty.csv").write_text(DUTY, encoding="utf-8")
-        for name, entry in TABLES["gallery"].items():
-            ended, _, said = call(program, [*shlex.split(entry["command"]), "--plot", str(drawn / f"{name}.png")])
-            if ended:
-                raise GearheatError(f"docs: gearheat {entry['command']} ends with {ended}: {said}")
-    yield "gallery.md", page("gallery", pictures=TABLES["gallery"])
 
 
 def _named(param: Any) -> str:
