@@ -9,8 +9,7 @@ import numpy as np
 from ...model.errors import DataError
 from ..scenario import Scenario
 from .checks import check
-from .nominal import Nominal
-from .sensors import drive_by
+from .nominal import Nominal, drive_by
 from .table import Campaign, Sensor
 
 #: Means of a log that are judged.

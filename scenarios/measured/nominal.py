@@ -5,7 +5,8 @@ The power balance of measured rows: what goes in at the shaft ends and does not 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +16,7 @@ from ...model.errors import GearheatError
 from ...model.parts.shaft import ShaftEnd
 from ...model.run.steady import steady
 from ..scenario import Scenario
-from .table import Campaign
+from .table import Campaign, Sensor
 
 #: Speed below which a shaft is at rest [rad/s].
 REST = 1e-6
@@ -93,3 +94,18 @@ def efficiency(powers: dict[str, np.ndarray]) -> np.ndarray:
     into = np.asarray(sum(np.maximum(power, 0.0) for power in powers.values()))
     out = np.asarray(sum(np.maximum(-power, 0.0) for power in powers.values()))
     return np.where(into > 0, out / np.where(into > 0, into, 1.0), np.nan)
+
+
+def drive_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
+    """The rig driven by what a campaign gives at its shaft ends, at the operating point of its file.
+
+    Args:
+        scenario: the rig
+        sensors: of the campaign; those that are given drive
+    """
+    driven = scenario.driven_by([sensor.reads for sensor in sensors if sensor.role == "given"])
+    stated = driven.operating_point
+    if not (missing := driven.driven_paths() & driven.shaft_paths() - stated.keys()):
+        return driven
+    own = Nominal(scenario).operating  # a load says no sign
+    return replace(driven, operating_point={**stated, **{path: own[path] for path in sorted(missing) if path in own}})

@@ -19,14 +19,13 @@ from ..scenario import Scenario
 from .card import Card
 from .checks import check
 from .lubrication import oil_problems, oil_values, oil_warnings
-from .nominal import Nominal
+from .nominal import Nominal, drive_by
 from .sensors import (
     CONTEXT,
     DIRECTIONS,
     SI,
     Cells,
     contradictions,
-    drive_by,
     floats,
     order_warnings,
     sensors_of,

@@ -5,7 +5,7 @@ Beside them a table may have columns of context: which test a reading belongs to
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -306,16 +306,6 @@ def without_sign(
     ways = {s.name: -1.0 if usual.value(s.reads) < 0 else 1.0 for s in sensors if s.name in loads}
     signed = (replace(s, signs=(ways[s.name], -ways[s.name])) if s.name in ways else s for s in sensors)
     return tuple(signed), values | {name: np.abs(columns[name]) for name in ways}
-
-
-def drive_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
-    """The rig driven by what a campaign gives at its shaft ends.
-
-    Args:
-        scenario: the rig
-        sensors: of the campaign; those that are given drive
-    """
-    return scenario.driven_by([sensor.reads for sensor in sensors if sensor.role == "given"])
 
 
 def instrument_of(path: str) -> Instrument:

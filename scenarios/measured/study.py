@@ -12,9 +12,8 @@ from ..scenario import Scenario
 from ..write import DIAGNOSED, SET
 from .card import Card, read_card
 from .lubrication import lubricate, oil_values
-from .nominal import Nominal
+from .nominal import Nominal, drive_by
 from .read import read_campaign
-from .sensors import drive_by
 from .table import Campaign, Sensor
 
 

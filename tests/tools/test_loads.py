@@ -8,7 +8,7 @@ import pytest
 from gearheat.model.errors import GearheatError, ScenarioError
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
-from gearheat.scenarios.measured.nominal import model_values
+from gearheat.scenarios.measured.nominal import drive_by, model_values
 from gearheat.scenarios.measured.read import read_campaign
 
 COUNTS = (1, 2, 3, 4)
@@ -79,7 +79,10 @@ def test_a_table_may_hold_loads_or_signed_torques(rig, count, tmp_path):
                 for share in (1.0, 0.8)
             )
         )
-        found.append(model_values(read_campaign(path, scenario, read_card(card)))["output.tau"])
+        campaign = read_campaign(path, scenario, read_card(card))
+        found.append(model_values(campaign)["output.tau"])
+    nominal = drive_by(scenario, campaign.sensors).operating_point
+    assert nominal["output.tau"] == pytest.approx(point["output.tau"])
     assert found[0] == pytest.approx(found[1])
     assert found[0][0] == pytest.approx(point["output.tau"], rel=1e-3)
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from ....model.errors import DataError
 from ....scenarios.measured.card import Card
-from ....scenarios.measured.nominal import Nominal
-from ....scenarios.measured.sensors import drive_by, sensors_of
+from ....scenarios.measured.nominal import Nominal, drive_by
+from ....scenarios.measured.sensors import sensors_of
 from ....scenarios.measured.table import Campaign, Sensor
 from ....scenarios.scenario import Scenario
 

@@ -164,45 +164,51 @@ class Whitened:
     def beside(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
         """Beside a set: what ties other columns to it (M, j), what it explains (j,), log density over none."""
         U = self.W[:, list(members)] * np.array(widths)
-        A = U.T @ U + np.eye(U.shape[1])
-        root = np.linalg.cholesky(A)
+        root = np.linalg.cholesky(U.T @ U + np.eye(U.shape[1]))
         turned = np.linalg.solve(root, U.T).T
         b = turned.T @ self.e
         return turned, b, float(0.5 * b @ b - np.log(np.diag(root)).sum())
 
-    def gains(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
-        """Log Bayes factor of every size beside a set (n,), its likeliest width (n,), and log density over none."""
-        turned, b, log = self.beside(members, widths)
+    def gains(self, turned: np.ndarray, b: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Log Bayes factor of every size beside a set (n,), and its likeliest width (n,).
+
+        Args:
+            turned, b: of `beside`
+            least: what a size's must come to (n,); those that cannot have -inf
+        """
         tie = turned.T @ self.W
         s, q = self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12)
-        logs, at = np.empty(len(s)), np.empty(len(s))
-        for k, tried, prior in self.table.groups:
+        logs, at = np.full(len(s), -np.inf), np.zeros(len(s))
+        for own, tried, prior in self.table.groups:
+            high = 0.5 * s[own] ** 2 / q[own] - np.log(prior.min(axis=0))
+            able = high > least[own]
+            k = own[able]
             each, inside = by_width(s[k], q[k], self.table.low[k], self.table.high[k], tried)
-            logs[k], at[k] = averaged(each, inside, prior), tried[np.argmax(each, axis=0)]
-        return logs, at, log
+            if len(k):
+                logs[k], at[k] = averaged(each, inside, prior[:, able]), tried[np.argmax(each, axis=0)]
+        return logs, at
 
     def scored(self, members: Sequence[int], widths: Sequence[float]) -> TermSet:
         """A set with the widths of its members chosen in turn, and its log joint density."""
-        own, more = list(widths), np.zeros(len(widths))
+        n, own, more = len(members), np.array(widths), np.zeros(len(widths))
+        W, table = self.W[:, list(members)], self.table
+        A, c = W.T @ W, self.along[list(members)]
         for _ in range(ROUNDS):
             for i, k in enumerate(members):
-                s, q = self._one(k, [*members[:i], *members[i + 1 :]], [*own[:i], *own[i + 1 :]])
-                tried, low, high = self.table.linear.terms[k].widths, self.table.low[k], self.table.high[k]
+                rest = np.arange(n) != i
+                tie = np.linalg.solve(A[np.ix_(rest, rest)] + np.diag(own[rest] ** -2), A[rest, i])
+                s, q = float(c[i] - c[rest] @ tie), float(max(A[i, i] - A[i, rest] @ tie, 1e-12))
+                tried, low, high = table.linear.terms[k].widths, table.low[k], table.high[k]
                 logs, inside = by_width(s, q, low, high, tried)
                 inside = inside / mass_inside(0.0, tried, low, high)
                 logs = logs + np.log(np.maximum(inside, 1e-300))
                 best = int(np.argmax(logs))
-                own[i] = float(tried[best])
+                own[i] = tried[best]
                 more[i] = float(logsumexp(logs) - np.log(len(logs)) - logs[best]) + np.log(max(inside[best], 1e-300))
-        _, _, log = self.beside(members, own)
+        _, _, log = self.beside(members, own.tolist())
         beside = [k for k, _ in self.scatter.beside]
-        whole = self.log + log + float(more.sum()) + self.table.log_prior([*members, *beside])
-        return TermSet(tuple(members), tuple(own), self.scatter, whole)
-
-    def _one(self, k: int, members: Sequence[int], widths: Sequence[float]) -> tuple[float, float]:
-        turned, b, _ = self.beside(members, widths)
-        tie = turned.T @ self.W[:, k]
-        return float(self.along[k] - b @ tie), float(max(self.length[k] - tie @ tie, 1e-12))
+        whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])
+        return TermSet(tuple(members), tuple(own.tolist()), self.scatter, whole)
 
     def search(self, starts: Sequence[TermSet], looks: int) -> list[TermSet]:
         """The likeliest sets in this scatter, best first.
@@ -230,19 +236,21 @@ class Whitened:
             for base in [(own.members, own.widths), *fewer]:
                 if frozenset(base[0]) not in seen and len(base[0]) < MOST:
                     seen.add(frozenset(base[0]))
-                    for offer in self._offers(*base):
+                    for offer in self._offers(*base, best):
                         if frozenset(offer[1]) not in known and -offer[0] > best - WINDOW:
                             heapq.heappush(queue, offer)
         return sorted(known.values(), key=lambda s: (-s.log, s.members))
 
-    def _offers(self, members: tuple[int, ...], widths: tuple[float, ...]) -> Iterator[_Offer]:
-        """A set, and it with each of the likeliest further members."""
-        gains, at, log = self.gains(members, widths)
-        whole, beside = self.log + log, [k for k, _ in self.scatter.beside]
-        yield -(whole + self.table.log_prior([*members, *beside])), members, widths
-        logs = whole + gains + self.table.log_priors([*members, *beside])[: self.table.n]
+    def _offers(self, members: tuple[int, ...], widths: tuple[float, ...], best: float) -> Iterator[_Offer]:
+        """A set, and it with each of the likeliest further members, near enough to the best known log joint density."""
+        turned, b, log = self.beside(members, widths)
+        whole, kept = self.log + log, [*members, *(k for k, _ in self.scatter.beside)]
+        yield -(whole + self.table.log_prior(kept)), members, widths
+        prior = self.table.log_priors(kept)[: self.table.n]
+        gains, at = self.gains(turned, b, best - WINDOW - whole - prior)
+        logs = whole + gains + prior
         count: dict[str, int] = {}
-        for k in np.argsort(-logs)[: 2 * KEPT]:
+        for k in np.argsort(-logs, kind="stable")[: 2 * KEPT]:
             family = str(self.table.families[k])
             if np.isfinite(logs[k]) and count.get(family, 0) < ALIKE:
                 count[family] = count.get(family, 0) + 1
