@@ -110,7 +110,9 @@ class Store:
         return [column for column in cells if old.get(column, cells[column]) != cells[column]]
 
     def _step(self, m: Machine) -> float:
-        times = [t for (t,) in self.base.execute("select time from rows where machine = ? order by time", [m.name])]
+        times: list[float] = [
+            t for (t,) in self.base.execute("select time from rows where machine = ? order by time", [m.name])
+        ]
         return sorted(b - a for a, b in itertools.pairwise(times))[(len(times) - 1) // 2]
 
     def until(self, m: Machine, samples: int) -> float:
