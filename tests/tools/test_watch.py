@@ -62,6 +62,17 @@ def test_a_window_is_answered_with_all_that_has_come(sensors: tuple[Sensor, ...]
     assert as_text(found[2]) == "2016-03-01T02:20:00Z one: ALARM: no cause stands out"
 
 
+def test_times_without_a_calendar_are_seconds(tmp_path: Path) -> None:
+    lines = [f"{k / 6:.6f},1500,8000,20,50" for k in range(17)]
+    text = "\n".join((HEAD.replace("time_utc", "time_h"), *lines)).encode()
+    sensors = (Sensor("T_sump", "T_sump", "sump.T", "oil_temp", "read", "degC", 0.3, 0.3),)
+    store = Store(tmp_path / "state", "")
+    for _ in events(sensors, Stream(io.BytesIO(text), "one"), store):
+        pass
+    assert [e["to"] for e in said(store)] == pytest.approx([4 * 600.0, 9 * 600.0, 14 * 600.0, 14 * 600.0], abs=0.01)
+    assert Store(tmp_path / "state", "").machines["one"].alarm == said(store)[-1]["alarm"]
+
+
 def test_what_is_late_or_there_twice_counts_once(sensors: tuple[Sensor, ...]) -> None:
     plain = list(map(line, range(16)))
     mixed = [*plain[:6], plain[4], *plain[7:9], plain[6], plain[8], *plain[9:], plain[0]]

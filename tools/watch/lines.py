@@ -78,7 +78,7 @@ def as_text(event: Mapping[str, Any]) -> str:
         f"{name} {r['measured']:.1f} ({r['predicted']:.1f}, {r['low']:.1f} to {r['high']:.1f})"
         for name, r in event["readings"].items()
     )
-    alarm = f", alarm since {event['alarm']}: {named}" if event["alarm"] else ""
+    alarm = f", alarm since {event['alarm']}: {named}" if event["alarm"] is not None else ""
     return f"{head}: {', '.join(shown)}; changed {event['changed']:.0%}{alarm}"
 
 

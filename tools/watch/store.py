@@ -20,7 +20,7 @@ FIRST = 10
 VERSION = 1
 TABLES = """
 create table about (key text primary key, value text);
-create table machines (machine text primary key, kind text, step real, answered real, count integer, alarm text);
+create table machines (machine text primary key, kind text, step real, answered real, count integer, alarm);
 create table rows (machine text, time real, cells text, primary key (machine, time)) without rowid;
 create table places (source text primary key, place text);
 create table events (number integer primary key, kind text, machine text, text text);
@@ -41,7 +41,7 @@ class Machine:
         step: from sample to sample [s], 0 while it is not known
         answered: time of the last sample of the last window that was answered [s]
         count: samples after it
-        alarm: since when there is an alarm, empty without
+        alarm: since when there is an alarm, None without
     """
 
     name: str
@@ -49,7 +49,7 @@ class Machine:
     step: float = 0.0
     answered: float = float("-inf")
     count: int = 0
-    alarm: str = ""
+    alarm: str | float | None = None
 
 
 class Store:

@@ -9,7 +9,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import DataError
+import numpy as np
+
+from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
 from ...scenarios.measured.logs import NUMBERS, Log, find_time, parse_number, parse_time, read_log
 from ...scenarios.measured.table import Sensor
@@ -130,7 +132,7 @@ class Watch:
             said = f'its time is "{row.cells[column]}"' if column else "has no time"
             raise DataError(f"{row.where}: {said}; the row is left out") from None
         if kind == NUMBERS:
-            return float(in_si(time, split_unit(column)[1] or "s", "s", name=row.where)), kind
+            return float(in_si(np.array([time]), split_unit(column)[1] or "s", "s", name=row.where)[0]), kind
         if time > self.clock() + AHEAD:
             raise DataError(f"{row.where}: its time, {stamp(time, kind)}, has not come yet; the row is left out")
         return time, kind
@@ -149,12 +151,12 @@ class Watch:
         when = {"machine": m.name, "from": stamp(begin, m.kind), "to": stamp(until, m.kind)}
         try:
             answer = self.judge(m.name, m.kind, *self.store.rows(m, until))
-        except DataError as error:
+        except GearheatError as error:
             self._warn(m, str(error), **when)
         else:
             alarm = answer["verdict"] != "consistent"
-            if alarm != bool(m.alarm):
-                m.alarm = when["to"] if alarm else ""
+            if alarm != (m.alarm is not None):
+                m.alarm = when["to"] if alarm else None
                 said = {"causes": answer["causes"], "verdict": answer["verdict"]} if alarm else {}
                 self.store.say({"event": "alarm" if alarm else "cleared", **when, **said})
             self.store.say({"event": "window", **when, **answer, "alarm": m.alarm})
