@@ -116,7 +116,7 @@ class Files:
         self._seen[path] = state.st_mtime_ns, state.st_size
         name = path.relative_to(self.root).as_posix() if path != self.root else path.name
         try:
-            columns, lines = read_columns(path)
+            columns, lines = read_columns(path, lambda header: header)
         except DataError as error:
             yield Row(machine, {}, path.name, problem=str(error))
             return
