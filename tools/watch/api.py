@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -90,5 +91,5 @@ def _events(own: Watch, store: Store, source: Source, after: int | None) -> Iter
             yield json.loads(text)
             store.move(TAKEN, last := number)
     store.commit()
-    if not store.machines:
+    if not any(m.count or math.isfinite(m.answered) for m in store.machines.values()):
         raise DataError("no sample came that can be used. Check the source, and the columns of its card.")
