@@ -8,7 +8,7 @@ from itertools import count
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, Ellipse, FancyBboxPatch, Polygon, Rectangle
+from matplotlib.patches import Ellipse, FancyBboxPatch, Polygon, Rectangle
 
 from ...model.core.connect import Assembly, nets
 from ...model.core.declare import Port
@@ -213,11 +213,9 @@ def _draw_set(d: _Drawing, mesh: Mesh, shaft: Shaft, s: float) -> None:
             d.box(ring, s, half, 0.16, name)
         d.box(shaft, s, half - 0.05, 1.12, name)
         at = shaft.point(s)
-        shape = Ellipse if "wave" in names else Circle
-        size = (0.75, 1.9) if "wave" in names else (0.42,)
-        d.panel.add_patch(
-            shape(tuple(at), *size, facecolor="white", edgecolor=EDGE, linewidth=0.8, zorder=5, alpha=0.6)
-        )
+        wide, high = (0.75, 1.9) if "wave" in names else (0.84, 0.84)
+        round_ = {"facecolor": "white", "edgecolor": EDGE, "linewidth": 0.8, "zorder": 5, "alpha": 0.6}
+        d.panel.add_patch(Ellipse((float(at[0]), float(at[1])), wide, high, **round_))
     for side in (-1, 1) if mesh.held else ():
         top = shaft.point(s, side * 1.62)
         d.panel.plot([top[0] - 0.35, top[0] + 0.35], [top[1]] * 2, color=EDGE, lw=1.2, zorder=4)
@@ -303,7 +301,7 @@ def _draw_housing(d: _Drawing, assembly: Assembly, train: Train) -> None:
 def _level(assembly: Assembly, train: Train, level: float | None) -> float | None:
     """Height of the oil beside the lowest gear that dips, by its real radius and height; None where it is not known."""
     dips = {p.name: p.values for p in assembly.parts if {"r", "height"} <= p.values.keys()}
-    drawn = []
+    drawn: list[tuple[float, float, Mapping[str, float]]] = []
     for mesh in train.meshes:
         for (shaft, _, _), r in zip(mesh.shafts, mesh.radii, strict=False):
             drawn += [(shaft.origin[1], r, dips[name]) for name in shaft.parts if name in dips]

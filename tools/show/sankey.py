@@ -166,7 +166,8 @@ def _route(
     columns: list[list[Place]] = [[] for _ in range(1 + max((p.column for p in places.values()), default=-1))]
     for place in places.values():
         columns[place.column].append(place)
-    ends, bands = {path.ends for path in paths}, []
+    ends = {path.ends for path in paths}
+    bands: list[_Band] = []
     for path in paths:
         begin, end = places[path.begins], places[path.ends]
         step = 1 if end.column > begin.column else -1
@@ -228,7 +229,8 @@ def _draw_place(panel: Axes, place: Place, scale: float, temperature: str | None
 
 def _draw_bands(panel: Axes, bands: Sequence[_Band], scale: float) -> list[tuple[float, float, str]]:
     """Draw the bands, those of one box beside each other in the order of where they lead; their middles and words."""
-    starts, ends = {}, {}
+    starts: dict[int, float] = {}
+    ends: dict[int, float] = {}
     for side, other, found in (("begins", "ends", starts), ("ends", "begins", ends)):
         used: dict[int, float] = {}
         for i in sorted(range(len(bands)), key=lambda i: getattr(bands[i], other).y):

@@ -93,9 +93,9 @@ class _Layout:
         for part in (part for part in assembly.parts if part.axes == "same"):
             flanges = [port.name for port in part.ports.values() if isinstance(port, Flange)]
             one, other = self.net[flanges[0]], self.net[flanges[-1]]
-            self.nets[one] = (*self.nets[one], *self.nets[other])
+            self.nets[one] = [*self.nets[one], *self.nets[other]]
             self.net |= {port.name: one for port in self.nets[other]}
-            self.nets[other] = ()
+            self.nets[other] = []
         self.joins = [part for part in assembly.parts if self._joins(part)]
         self.longest = max((sum(_real(part)) for part in self.joins), default=0.0)
         self.placed: dict[int, Shaft] = {}
