@@ -18,6 +18,7 @@ from ..model.parts import PARTS
 from ..model.units import in_unit, spell_unit, split_quantity, to_si
 from .document import ABOUT, sources_of
 from .entries import Entry, entry
+from .ranges import check_range
 from .shipped import FILES
 
 #: Key of the table of standard uncertainties of a part.
@@ -137,12 +138,16 @@ def in_range(where: str, raw: object, quantity: Quantity, *, sensible: bool = Tr
         theirs = unit_of(raw) if "(" not in quantity.unit else ""
         known = f"{in_unit(number, theirs, unit):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
+    if quantity.whole and value != round(value):
+        raise ScenarioError(f"{name} = {written} must be a whole number.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
     if sensible and value and np.isfinite(quantity.low) and not least <= abs(value) <= most:
         raise ScenarioError(
             f"{name} = {written} cannot be of a gearbox: expected {least:g} to {most:g} {unit} in size."
             " Check its unit and its exponent."
         )
+    if sensible:
+        check_range(name, written, value, quantity)
     return value
 
 

@@ -3,6 +3,7 @@
 from .model.core.component import Component as Component
 from .model.errors import GearheatError as GearheatError
 from .scenarios.own_types import use_parts as use_parts
+from .scenarios.ranges import override as override
 from .tools.build.new import NewRig as NewRig, new as new
 from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
 from .tools.compare.replay import Replays as Replays, replay as replay

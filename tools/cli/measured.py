@@ -149,7 +149,6 @@ def _print_losses(table: gh.LossTable) -> None:
         for key, value in contacts.totals.items():
             console.say(f"{key}: {value:.6g}")
     print_outside(table.found.get("outside", ()))
-    print_unchecked(table.found["unchecked"])
 
 
 def _print_method(rated: gh.MethodRating) -> None:
