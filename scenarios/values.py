@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.core.component import Component
+from ..model.core.component import Component, make
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
@@ -284,7 +284,7 @@ class _PartReader:
     def _check_component(self, complete: bool, failed: Iterable[str]) -> None:
         """What the part itself finds: missing values, unknown choices; without what follows from other problems."""
         try:
-            self.cls(self.name, **self.result.values)
+            make(self.cls, self.name, self.result.values)
         except GearheatError as error:
             excused = tuple(f"{key} is missing" for key in (*failed, *(guess(key, self.meanings) for key in failed)))
             for problem in error.problems:
