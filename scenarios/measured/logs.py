@@ -7,7 +7,7 @@ import gzip
 import math
 import zlib
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from importlib import import_module
@@ -127,16 +127,37 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
         sensors, column = _columns(header, scenario, card, path.name)
         return {column, segment, *(s.column for s in sensors)}
 
-    header, cells, lines = _cells(path, used)
-    (sensors, time_column), problems = _columns(header, scenario, card, path.name), Problems()
-    time, dated = _time(cells[time_column], time_column, path.name, lines, problems)
-    values = {s.name: _values(cells[s.column], s, path.name, lines, problems) for s in sensors}
-    raise_all(problems, path.name)
+    cells, lines = read_columns(path, used)
+    return log_of(path.name, cells, lines, scenario, card)
+
+
+def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenario: Scenario, card: Card) -> Log:
+    """A log of a rig from its columns.
+
+    Args:
+        name: of the file
+        cells: header -> cells (n,), those of time with them
+        lines: line of each row in the file (n,)
+        scenario: the rig
+        card: its columns, units and sensors
+
+    Raises:
+        DataError: everything wrong with them, at once
+    """
+    (sensors, time_column), problems = _columns(list(cells), scenario, card, name), Problems()
+    time, dated = _time(cells[time_column], time_column, name, lines, problems)
+    values = {s.name: _values(cells[s.column], s, name, lines, problems) for s in sensors}
+    raise_all(problems, name)
     sensors, values = without_sign(scenario, sensors, values)
-    stretch, step = _stretches(time, cells.pop(segment, None), path.name, lines)
-    values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)
-    check_log(path.name, sensors, values, lines, step, scenario)
-    return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
+    stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
+    values, gross = _remove_outliers(name, values, sensors, stretch, lines)
+    check_log(name, sensors, values, lines, step, scenario)
+    return Log(name, sensors, values, time, stretch, step, lines, dated, gross)
+
+
+def find_time(header: Iterable[str]) -> str:
+    """The column of time, empty without one."""
+    return next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
 
 
 def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
@@ -144,21 +165,24 @@ def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -
     sensors, problems = place_sensor(sensors_of(scenario, card), header, card, name)
     if not any(s.role == "read" for s in sensors):
         problems.append(f"{name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
-    time_column = next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
+    time_column = find_time(header)
     if not time_column:
         problems.append(f'{name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
     raise_all(problems, name)
     return sensors, time_column
 
 
-def _cells(
+def read_columns(
     path: Path, used: Callable[[Sequence[str]], Collection[str]]
-) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
-    """Header, used columns, the line of each row; cells as numbers, block by block, where they are nothing else.
+) -> tuple[dict[str, Sequence[Any]], np.ndarray]:
+    """Used columns by header, the line of each row; cells as numbers, block by block, where they are nothing else.
 
     Args:
-        path: of the log
+        path: CSV, CSV.gz or Parquet
         used: which columns of a header
+
+    Raises:
+        DataError: it cannot be read, or its rows are not those of a table
     """
     try:
         if path.suffix in (".parquet", ".pq"):
@@ -184,7 +208,7 @@ def _cells(
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
     if not lines:
         raise DataError([f"{path.name}: holds no samples."])
-    return header, {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
+    return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
 
 
 def _compact(cells: Sequence[str]) -> Sequence[Any]:
@@ -211,17 +235,18 @@ def _open(path: Path) -> IO[str]:
 
 def _parquet(
     path: Path, used: Callable[[Sequence[str]], Collection[str]]
-) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
+) -> tuple[dict[str, Sequence[Any]], np.ndarray]:
     try:
         table = import_module("pyarrow.parquet").read_table(reading(path))
         kept = used(table.column_names)
     except ImportError:
         raise DataError([f'{path.name}: Parquet files need pyarrow: pip install "gearheat[parquet]".']) from None
     columns = {name: table.column(name).to_pylist() for name in table.column_names if name in kept}
-    return table.column_names, columns, np.arange(1, table.num_rows + 1)
+    return columns, np.arange(1, table.num_rows + 1)
 
 
-def _number(cell: Any) -> float:
+def parse_number(cell: Any) -> float:
+    """A cell as a number, NaN where it is empty. Raises TypeError or ValueError where it is none."""
     if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
         return math.nan
     if math.isinf(number := float(cell)):
@@ -235,7 +260,7 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     found = np.array(cells) if whole else np.full(len(cells), np.nan)
     for k, cell in enumerate([] if whole else cells):
         try:
-            found[k] = _number(cell)
+            found[k] = parse_number(cell)
         except (TypeError, ValueError):
             problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
     if not np.isfinite(found).any():
@@ -255,7 +280,7 @@ def _time(
         found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
     for k, cell in enumerate(cells):
         try:
-            found[k], kind = _instant(cell)
+            found[k], kind = parse_time(cell)
             kinds[kind] += 1
         except (TypeError, ValueError, OverflowError):
             problems.append(
@@ -274,8 +299,8 @@ def _time(
     return found, dated
 
 
-def _instant(cell: Any) -> tuple[float, str]:
-    """A time as a number, and what it is. Raises ValueError where it is none."""
+def parse_time(cell: Any) -> tuple[float, str]:
+    """A time as a number, and what it is. Raises TypeError, ValueError or OverflowError where it is none."""
     if not isinstance(cell, datetime) and _is_number(cell):
         if not math.isfinite(number := float(cell)):
             raise ValueError

@@ -27,7 +27,7 @@ ORDER = (
     ("tools.diagnose.report",),
     ("tools.diagnose", "tools.solve", "tools.check"),
     ("tools.describe", "tools.export", "tools.films", "tools.rating"),
-    ("tools.build", "tools.compare", "tools.page", "tools.verify", "tools.docs"),
+    ("tools.build", "tools.compare", "tools.page", "tools.verify", "tools.docs", "tools.watch"),
     ("tools.bench", "api"),
     ("tools.cli",),
     ("tools", "api.__main__"),

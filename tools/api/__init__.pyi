@@ -37,6 +37,7 @@ from .tools.solve.steady import SteadyState as SteadyState, steady as steady
 from .tools.solve.sweep import Sweep as Sweep, sweep as sweep
 from .tools.verify.contact.command import ContactVerification as ContactVerification, verify_contact as verify_contact
 from .tools.verify.verify import Verification as Verification, verify as verify
+from .tools.watch.api import watch as watch
 
 map = map_outputs
 PUBLIC: dict[str, tuple[str, str]]
