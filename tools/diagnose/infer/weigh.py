@@ -6,7 +6,7 @@ at the best of them until the best one stays. All fits are weighed alike, nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -319,7 +319,7 @@ class Weighing:
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
 
-    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: dict[str, dict[str, float]]) -> None:
+    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
