@@ -69,7 +69,7 @@ COMMANDS = {
 
 
 #: Files that hold what is done so far, for the next run to go on.
-GROWING = {"film": "out.csv"}
+GROWING = {"film": "out.csv.part"}
 
 
 @dataclass(frozen=True)
