@@ -61,7 +61,7 @@ class _Drawing:
         """The number of a part in the list, and what a page says there."""
         number = self.numbered.setdefault(part, next(self.numbers))
         circle = {"boxstyle": "circle,pad=0.18", "facecolor": "white", "edgecolor": EDGE, "linewidth": 0.6}
-        self.panel.text(*at, str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
+        self.panel.text(at[0], at[1], str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
         self.marks.append((float(at[0]), float(at[1]), self.told[part]))
 
 
@@ -214,8 +214,10 @@ def _draw_set(d: _Drawing, mesh: Mesh, shaft: Shaft, s: float) -> None:
         d.box(shaft, s, half - 0.05, 1.12, name)
         at = shaft.point(s)
         wide, high = (0.75, 1.9) if "wave" in names else (0.84, 0.84)
-        round_ = {"facecolor": "white", "edgecolor": EDGE, "linewidth": 0.8, "zorder": 5, "alpha": 0.6}
-        d.panel.add_patch(Ellipse((float(at[0]), float(at[1])), wide, high, **round_))
+        oval = Ellipse(
+            (at[0], at[1]), wide, high, facecolor="white", edgecolor=EDGE, linewidth=0.8, zorder=5, alpha=0.6
+        )
+        d.panel.add_patch(oval)
     for side in (-1, 1) if mesh.held else ():
         top = shaft.point(s, side * 1.62)
         d.panel.plot([top[0] - 0.35, top[0] + 0.35], [top[1]] * 2, color=EDGE, lw=1.2, zorder=4)
@@ -260,7 +262,9 @@ def _draw_shaft(
             out += 0.8
         place = shaft.point(edge + sign * (out + 0.2))
         across = "center" if not shaft.flat else "right" if sign < 0 else "left"
-        d.panel.text(*place, words, fontsize=8, va="center" if shaft.flat else "top", ha=across, linespacing=1.15)
+        d.panel.text(
+            place[0], place[1], words, fontsize=8, va="center" if shaft.flat else "top", ha=across, linespacing=1.15
+        )
         d.outside.append(shaft.point(edge + sign * (out + 1.1)))
         for name in seals[k :: len(stand_out)]:
             for b in (-1, 1):
@@ -285,9 +289,10 @@ def _draw_housing(d: _Drawing, assembly: Assembly, train: Train) -> None:
         return
     (x0, y0), (x1, y1) = np.min(d.corners, axis=0) - 0.2, np.max(d.corners, axis=0) + 0.2
     surface = next((part.name for part in assembly.parts if part.role == "surface"), "")
-    shape = {"boxstyle": "round,pad=0.12", "zorder": 0, "linewidth": 2.5}
     paper = f"{d.fills[surface]}40" if surface in d.fills else "#f7f8fa"
-    d.panel.add_patch(FancyBboxPatch((x0, y0), x1 - x0, y1 - y0, facecolor=paper, edgecolor="#8894a2", **shape))
+    walls = FancyBboxPatch((x0, y0), x1 - x0, y1 - y0, "round,pad=0.12", facecolor=paper, edgecolor="#8894a2")
+    walls.set(zorder=0, linewidth=2.5)
+    d.panel.add_patch(walls)
     bath = next((part for part in assembly.parts if part.role == "bath"), None)
     if bath is None or not all(shaft.flat for shaft in train.shafts):
         return
@@ -330,8 +335,7 @@ def end_words(ends: Sequence[str], values: Mapping[str, float]) -> dict[str, str
     found = {}
     for end in ends:
         w, tau = values.get(f"{end}.w"), values.get(f"{end}.tau")
-        words = [f"{abs(w) * 30 / np.pi:.4g} rpm"] * (w is not None) + [f"{abs(tau or 0.0):.4g} N.m"] * (
-            tau is not None
-        )
+        words = [] if w is None else [f"{abs(w) * 30 / np.pi:.4g} rpm"]
+        words += [] if tau is None else [f"{abs(tau):.4g} N.m"]
         found[end] = "\n".join(words)
     return found
