@@ -213,10 +213,33 @@ def make_private(folder: Path) -> None:
         folder.mkdir(mode=0o700, exist_ok=True)
 
 
-def _compile(files: Mapping[str, str], target: str) -> bytes:
+def compile_told(source: str, headers: Mapping[str, str]) -> str:
+    """What the compiler says of the frames of a C source's functions, compiled for this machine.
+
+    Args:
+        source: the C text
+        headers: name -> text of files beside it
+
+    Raises:
+        FmuError: the compiler is missing or fails
+    """
+    target = host_platform().targets[0]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, OPTIMISE, *CODE, "-Wframe-larger-than=0", "-c"]
+    with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
+        for name, text in {"all.c": source, **headers}.items():
+            Path(folder, name).write_text(text, encoding="utf-8")
+        return _run([*command, "all.c"], target, folder, _environment())
+
+
+def _environment() -> dict[str, str]:
     environment = dict(os.environ)
     for variable, folder in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
         environment.setdefault(variable, str(cache_folder() / "zig" / folder))
+    return environment
+
+
+def _compile(files: Mapping[str, str], target: str) -> bytes:
+    environment = _environment()
     with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
@@ -235,7 +258,7 @@ def _commands(target: str, files: Iterable[str]) -> list[list[str]]:
     return [*objects, [*LINK, "-nostdlib", "-o", "library", "all.o", "windows.o", *_SYSTEM]]
 
 
-def _run(command: Sequence[str], target: str, folder: str, environment: Mapping[str, str]) -> None:
+def _run(command: Sequence[str], target: str, folder: str, environment: Mapping[str, str]) -> str:
     try:
         run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     except OSError as error:
@@ -245,6 +268,7 @@ def _run(command: Sequence[str], target: str, folder: str, environment: Mapping[
         first = next((line for line in said if "error" in line), said[0])
         hint = " Install it: pip install ziglang" if "No module named" in run.stderr else ""
         raise FmuError(f"compiling for {target} failed: {first[:300]}.{hint}")
+    return run.stderr
 
 
 def _join(slices: list[bytes]) -> bytes:

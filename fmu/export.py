@@ -31,6 +31,7 @@ import uuid
 import zipfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from ..model.core.flat import FlatModel
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
@@ -61,13 +62,14 @@ def export(
     uncertainties: Mapping[str, float] | None = None,
     figures: Mapping[str, str] | None = None,
     parts: Sequence[PartText] = (),
-    verify: Callable[[Path], Sequence[Check]] | None = None,
+    verify: Callable[[Path, str], Sequence[Check]] | None = None,
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
     choices: Sequence[Choice] = (start_choice(),),
     audit: bool = True,
     uncertain: Uncertain | None = None,
+    real_time: float | None = None,
     others: Related = Related(),
     progress: Progress = lambda done, share: None,
 ) -> Path:
@@ -83,12 +85,14 @@ def export(
         sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
         figures, parts: for the documentation, title -> the model or a run of it as SVG, and what the model is made of
-        verify: called with the finished file; the checks and results it gives are written into the documentation
+        verify: called with the finished file and its C source; the checks and results it gives are written into the
+            documentation
         owner: author, version, licence and date that its owner gives
         with_sources, audit: whether it holds its C source, and two states that integrate the energy across the boundary
         fmi: version of the standard, 2 or 3
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         uncertain: what makes standard deviations, which co-simulation alone has
+        real_time: longest step of a solver that takes no more of them than a communication step asks for [s]
         others: further parameter sets, and a run that an importer can repeat
         progress: called with what is done, and the share of the compiling
 
@@ -97,7 +101,13 @@ def export(
     """
     path, chosen = Path(path), platforms(platform, fmi)
     kept, variables = _prepare_model(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
-    code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
+    told_of: dict[str, Any] = {
+        "owner": owner,
+        "with_sources": with_sources,
+        "uncertain": uncertain,
+        "real_time": real_time,
+    }
+    code, told, directions = _code(kept, variables, fmi, **told_of)
     about = About(sources or {}, uncertainties or {}, figures or {}, parts, _idle(flat, kept), directions, with_sources)
     content = {
         "modelDescription.xml": told,
@@ -109,7 +119,9 @@ def export(
     }
     _write_archive(path, content)
     if verify is not None:
-        _write_archive(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
+        _write_archive(
+            path, content | {_PAGE: documentation(kept, variables, about, verify(path, code), fmi=fmi).encode()}
+        )
     return path
 
 
@@ -158,11 +170,12 @@ def _code(
     owner: Owner,
     with_sources: bool,
     uncertain: Uncertain | None,
+    real_time: float | None,
 ) -> tuple[str, bytes, Directions | None]:
     """The C source and the description, with the identification that follows from both; directions of deviations."""
     model = equations(flat, variables.audit)
     directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
-    code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
+    code, dependent = source(flat, model, variables, fmi, directions, real_time), dependencies(model, variables)
     without_guid = description(
         flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi
     )

@@ -30,6 +30,8 @@ _NAME = "\n#define fmi2FullName(name) name\n"
 #: Types of variables, one bit each as instance.h has them.
 _TYPES = {"Real": 1, "Integer": 2, "Enumeration": 4}
 
+#: Corrections of Newton's method that a solver for real time tries at most at each end of a communication step.
+MAX_CORRECTIONS = 20
 #: Where the identification goes; it is the hash of everything else.
 GUID_MARK = "@GUID@"
 
@@ -46,7 +48,14 @@ _TABLES = tables("wrapper")
 _DEFINITION = re.compile(rf"^(fmi2\w+) ({'|'.join(_TABLES['inner'])})\(", re.MULTILINE)
 
 
-def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, directions: Directions | None = None) -> str:
+def source(
+    flat: FlatModel,
+    model: Equations,
+    table: Table,
+    fmi: int = 2,
+    directions: Directions | None = None,
+    real_time: float | None = None,
+) -> str:
     """The whole C text, with GUID_MARK in place of the identification.
 
     Args:
@@ -55,13 +64,15 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
         table: its variables
         fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
         directions: of the standard deviations, where it has some
+        real_time: longest step of a solver that takes no more steps than this asks for [s]
     """
     name = re.sub(r"[^ -~]|[*/\\?]", "_", flat.name)
     head = f"/* {name}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
         functions += Sensitivities(model, directions.count, directions.moving, locate_deviations(table)).functions
-    values = [_sizes(flat, model, table, directions), _tables(flat, table), _directions(directions)]
+    bounds = {"REAL_TIME": emit.number(real_time or 0.0), "MAX_CORRECTIONS": MAX_CORRECTIONS if real_time else -1}
+    values = [_sizes(flat, model, table, directions, bounds), _tables(flat, table), _directions(directions)]
     generated = "\n".join([*values, *map(emit.function, functions)])
     instead = {} if directions is None else _UNCERTAIN
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
@@ -80,7 +91,9 @@ def _fmi_headers() -> str:
     return whole.replace(_NAME, wrapper("fmi2_names.h"))
 
 
-def _sizes(flat: FlatModel, model: Equations, table: Table, directions: Directions | None) -> str:
+def _sizes(
+    flat: FlatModel, model: Equations, table: Table, directions: Directions | None, bounds: Mapping[str, Any]
+) -> str:
     sizes = {
         "NX": len(table.of("state")),
         "NZ": len(flat.algebraic),
@@ -101,8 +114,9 @@ def _sizes(flat: FlatModel, model: Equations, table: Table, directions: Directio
         "TOLERANCE": TOLERANCE,
         "MODEL_NAME": _string(flat.name),
         "MODEL_GUID": _string(GUID_MARK),
+        **bounds,
     }
-    return "#include <math.h>\n\n" + define_macros(sizes | newton_constants())
+    return "#include <math.h>\n\n" + wrapper("c90.h") + define_macros(sizes | newton_constants())
 
 
 def define_macros(values: Mapping[str, Any]) -> str:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+import fmpy
 import numpy as np
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
 from gearheat.scenarios.load import load
-from gearheat.tools.bench.c_importer import Compiler, program, unpack
+from gearheat.tools.bench.c_importer import Compiler, includes, program, unpack
 
 HERE = Path(__file__).parent / "fmu" / "importer"
 
@@ -50,9 +52,25 @@ def unpacked(flat: FlatModel, folder: Path, start: Mapping[str, float] | None = 
     return facts
 
 
+def unpacked_3(facts: Path, flat: FlatModel, start: Mapping[str, float] | None = None) -> Path:
+    """The same facts for the model's FMU for FMI 3.0, whose source is unpacked into a folder `3` beside them."""
+    folder = facts.parent / "3"
+    fmu = export(flat, folder / "model.fmu", start=start, fmi=3)
+    with zipfile.ZipFile(fmu) as file:
+        file.extract("sources/all.c", folder)
+    library, _, rest = facts.read_text(encoding="utf-8").split("\n", 2)
+    token = fmpy.read_model_description(str(fmu)).instantiationToken
+    (folder / "facts.txt").write_text(f"{library}\nguid {token}\n{rest}", encoding="utf-8")
+    return folder / "facts.txt"
+
+
 def library(facts: Path, compiler: Compiler, *options: str) -> Path:
-    """The shared library of an unpacked FMU's source."""
-    return compiler([facts.parent / "sources" / "all.c"], (*LIBRARY, *options), ".so")
+    """The shared library of an unpacked FMU's source; of one for FMI 3.0, under functions of FMI 2.0."""
+    source = facts.parent / "sources" / "all.c"
+    if facts.parent.name != "3":
+        return compiler([source], (*LIBRARY, *options), ".so")
+    own = ("-DFMI3_OVERRIDE_FUNCTION_PREFIX", *includes())
+    return compiler([source, HERE / "three.c"], (*LIBRARY, *own, *options), ".so")
 
 
 @cache

@@ -419,7 +419,7 @@ static int settle(Row *w, const double *from, double *z)
     w->watched = w->quiet = w->heat = 1;
     memcpy(start, from, N * sizeof *start);
     memcpy(start + N, model_z_start, NZ * sizeof *start);
-    if (implicit_solve(start, start + N, w->u, w->p, w->c) >= 0) return ROW_NO_SOLUTION;
+    if (implicit_solve(start, start + N, w->u, w->p, w->c, -1) >= 0) return ROW_NO_SOLUTION;
     memcpy(z, start, NW * sizeof *z);
     reached = accepted(w, newton(w, z, MOST_NEWTON), &unstable);
     w->watched = 0;

@@ -15,7 +15,7 @@ static int timely(const Instance *m, double time, double step)
 
 /* A refused step is not tried again as long as its time, inputs, parameters and states are the same: a master that only
    repeats it would never end. */
-static uint64_t beginning(const State *s)
+static unsigned beginning(const State *s)
 {
     size_t from = offsetof(State, time);
     return hash((const char *)s + from, sizeof *s - from);

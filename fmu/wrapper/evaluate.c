@@ -15,7 +15,8 @@ static const char *unsolved(Instance *m)
     if (!m->algebra_known) {
         refresh_constants(m);
         memcpy(m->z, m->s.z, sizeof m->z);
-        m->unsolved = implicit_solve(m->s.x, m->z, m->s.u, m->s.p, m->c);
+        m->unsolved = implicit_solve(m->s.x, m->z, m->s.u, m->s.p, m->c,
+                                     m->s.mode & (INSTANTIATED | INITIALIZATION) ? -1 : MAX_CORRECTIONS);
         m->algebra_known = 1;
     }
     return m->unsolved < 0 ? NULL : model_blocks[m->unsolved];

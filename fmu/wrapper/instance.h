@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,7 +48,7 @@ typedef struct {
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
     int stepped;           /* a communication step has been done */
     double refused_step;   /* length of the last step that was refused, NAN when there is none, */
-    uint64_t refused_from; /* and where it began, as a hash */
+    unsigned refused_from; /* and where it began, as a hash */
     unsigned char wrong[AT_LEAST_1(NU)];   /* an input was last given a value out of its range, before the run */
     double time;
     double stop;

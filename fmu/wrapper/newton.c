@@ -53,6 +53,7 @@ static int lu_solve(const double *a, const int *pivot, double *d, int n)
 typedef struct {
     const double *x, *u, *p, *c;
     double share, left[AT_LEAST_1(NZ)];
+    int most;                  /* corrections that may still be tried; any number where it is negative */
 } Implicit;
 
 typedef struct {
@@ -61,9 +62,11 @@ typedef struct {
 } Correction;
 
 /* The equations at z and Newton's correction there; 0 where there is none. */
-static int implicit_correction(const Implicit *at, const double *z, Correction *k)
+static int implicit_correction(Implicit *at, const double *z, Correction *k)
 {
     int pivot[AT_LEAST_1(NZ)], i;
+    if (at->most == 0) return 0;
+    at->most -= at->most > 0;
     model_algebra(at->x, z, at->u, at->p, at->c, k->r, k->J);
     for (i = 0; i < NZ; i++) {
         if (at->share < 1.0) k->r[i] -= (1 - at->share) * at->left[i];
@@ -76,7 +79,7 @@ static int implicit_correction(const Implicit *at, const double *z, Correction *
     return 1;
 }
 
-static int implicit_newton(const Implicit *at, double *z, int most)
+static int implicit_newton(Implicit *at, double *z, int most)
 {
     Correction now, next;
     double damping = 1.0, trial[AT_LEAST_1(NZ)];
@@ -123,23 +126,24 @@ static int implicit_homotopy(Implicit *at, double *z)
     return share >= 1.0;
 }
 
-/* The algebraic variables at x, u, p, begun from z; -1, or the number of an equation that has no solution: then z is as
-   before. */
-static int implicit_solve(const double *x, double *z, const double *u, const double *p, const double *c)
+/* The algebraic variables at x, u, p, begun from z, by at most so many corrections (any number where negative); -1, or the
+   number of an equation that has no solution: then z is as before. */
+static int implicit_solve(const double *x, double *z, const double *u, const double *p, const double *c, int most)
 {
     static const double guesses[N_GUESSES] = GUESSES;
-    Implicit at = {x, u, p, c, 1.0, {0.0}};
+    Implicit at;
     Correction last;
     double found[AT_LEAST_1(NZ)];
     int k, i, worst = 0;
     if (NZ == 0) return -1;
+    at.x = x, at.u = u, at.p = p, at.c = c, at.share = 1.0, at.most = most;
     for (k = -2; k < N_GUESSES; k++) {
         for (i = 0; i < NZ; i++)
             found[i] = k == -2 ? z[i] : model_z_start[i] + (k < 0 ? 0.0 : guesses[k]) * model_z_nominal[i];
         if (implicit_newton(&at, found, MOST_NEWTON)) break;
     }
     if (k == N_GUESSES && !implicit_homotopy(&at, found)) {
-        at.share = 1.0;
+        at.share = 1.0, at.most = 1;
         implicit_correction(&at, found, &last);
         for (i = 0; i < NZ; i++)
             if (!(fabs(last.r[i]) <= fabs(last.r[worst]))) worst = i;

@@ -1,23 +1,23 @@
 /* Saved FMU states: copies of State, and as bytes with a header that refuses foreign or damaged ones. */
 
 #define SAVED_MAGIC "GHFMU2\0"
-#define SAVED_VERSION 1u
+#define SAVED_VERSION 2u
 
 typedef struct {
     char magic[8];
-    uint32_t version;
-    uint32_t size;
-    uint64_t model;
-    uint64_t checksum;
+    unsigned version;
+    unsigned size;
+    unsigned model;
+    unsigned checksum;
 } SavedHeader;
 
 /* FNV-1a */
-static uint64_t hash(const void *data, size_t size)
+static unsigned hash(const void *data, size_t size)
 {
     const unsigned char *bytes = data;
-    uint64_t h = 14695981039346656037u;
+    unsigned h = 2166136261u;
     size_t i;
-    for (i = 0; i < size; i++) h = (h ^ bytes[i]) * 1099511628211u;
+    for (i = 0; i < size; i++) h = (h ^ bytes[i]) * 16777619u;
     return h;
 }
 

@@ -50,7 +50,7 @@ OILS = ("ISO VG 150 mineral", "ISO VG 220 mineral", "ISO VG 320 mineral")
 UNEQUAL = 0.1
 CURVED = 0.03
 #: Parameters of losses and heat paths that differ so.
-TRUE = ("*.k_loss", "*.k_mu", "cooling.A", "foot.k_G", "oil_wall.A", "oil_gears_*.A")
+TRUE = ("*.k_loss", "*.k_mu", "cooling.A*", "foot.k_G", "oil_wall.A", "oil_gears_*.A")
 #: Standard deviations by which what is hidden moves the readings, at least and at most.
 LEAST, MOST = 5.0, 60.0
 #: Share of the cases without a fault, and with one; others have two to four.
@@ -94,7 +94,7 @@ FAULTS: tuple[Fault, ...] = (
     Fault("losses.mesh_friction", "stage_*.k_mu", 1.4, 2.5, one=True),
     Fault("losses.churning", "churning_*.k_loss", 1.5, 6.0),
     Fault("losses.oil_viscosity", "oil.nu_*", 0.4, 2.5),
-    Fault("cooling.air", "cooling.A", 0.5, 0.8),
+    Fault("cooling.air", "cooling.A*", 0.5, 0.8),
     Fault("cooling.foundation", "foot.k_G", 2.0, 6.0),
     Fault("cooling.oil_wall", "oil_wall.A", 0.2, 0.6),
     Fault("heat.external_source", HEAT, 0.1, 0.6),

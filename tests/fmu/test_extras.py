@@ -214,7 +214,8 @@ def test_what_is_known_of_values_does_not_change_the_model(sourced: Path, rc_fmu
 
 
 def test_checks_of_the_finished_file_are_written_down(models: SimpleNamespace, tmp_path: Path) -> None:
-    def verify(path: Path) -> list[tuple[str, str]]:
+    def verify(path: Path, code: str) -> list[tuple[str, str]]:
+        assert "fmi2DoStep" in code
         return [("charge after <1 s>", f"{play(path, {}, 1, 1)['capacitor.v'][-1]:.3f} V")]
 
     pages = []

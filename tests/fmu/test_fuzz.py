@@ -1,7 +1,7 @@
 """Random calls with random arguments, in a build that stops at undefined behaviour or at a wrong address.
 
 `GEARHEAT_FUZZ=100000 python -m pytest -s tests/fmu/test_fuzz.py` runs as many sequences of each model in each build,
-the planetary rig included, and tells what they did.
+the planetary rig included, for FMI 2.0 and 3.0, and tells what they did.
 """
 
 import os
@@ -13,7 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fmu_in_c import fuzzer, library, planetary, sanitizer, told, unpacked
+from fmu_in_c import fuzzer, library, planetary, sanitizer, told, unpacked, unpacked_3
 from gearheat.tools.bench.c_importer import Compiler
 
 ADDRESS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1")
@@ -21,6 +21,7 @@ ADDRESS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-
 #: Sequences of each model.
 MANY = int(os.environ.get("GEARHEAT_FUZZ", "0"))
 COUNTS = {"rc": MANY, "heat": MANY, "planetary": MANY} if MANY else {"rc": 1000, "heat": 1000}
+COUNTS |= {f"{name}, FMI 3.0": count // (1 if MANY else 4) for name, count in COUNTS.items()}
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sanitizers are used on Linux")
 
@@ -39,7 +40,8 @@ def address(facts: Path, first: int, count: int, compiler: Compiler) -> str:
 def facts(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("fuzz")
     made = {"rc": (models.rc, None), "heat": (models.heat, None)} | ({"planetary": planetary()} if MANY else {})
-    return {name: unpacked(flat, folder / name, start) for name, (flat, start) in made.items()}
+    found = {name: unpacked(flat, folder / name, start) for name, (flat, start) in made.items()}
+    return found | {f"{name}, FMI 3.0": unpacked_3(found[name], *those) for name, those in made.items()}
 
 
 def in_parts(name: str, work: Callable[[int, int], str], first: int, count: int, size: int = 2000) -> np.ndarray:

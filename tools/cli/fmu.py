@@ -32,6 +32,7 @@ def export(
     extras: Path | None = None,
     uncertainty: bool = False,
     constant: list[str] | None = None,
+    real_time: str | None = None,
     ssp: list[str] | None = None,
     json: str | None = None,
 ) -> None:
@@ -55,6 +56,7 @@ def export(
         extras=extras,
         uncertainty=uncertainty,
         constant=constant or (),
+        real_time=real_time,
         ssp=ssp or (),
     )
     found = written.as_dict()
@@ -112,6 +114,11 @@ def _print_fmu(found: Mapping[str, Any]) -> None:
     words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
     words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
     console.say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
+    if told := found["real_time"]:
+        bounds = f"{told['evaluations']} evaluations of implicit equations, {told['stack_bytes']} bytes of stack"
+        console.say(f"in a step of {told['step_s']:g} s at most: {told['solver_steps']} step of the solver, {bounds}")
+        for what, result in told["checks"].items():
+            console.say(f"  {what}: {result}")
     if found["extras"]:
         console.say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
     print_unchecked(found["unchecked"])

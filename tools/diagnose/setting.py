@@ -27,6 +27,9 @@ from .model.formula import Formula
 from .model.observe import Observed
 from .model.plant import Plant
 
+#: Outputs of a part that say what it does.
+DOES = ("P_loss", "Q_flow", "Q_flow_convection", "Q_flow_radiation")
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -124,7 +127,8 @@ def ranges_of(
     ends = [f"{end}.{quantity}" for end in roles.ends for quantity in ("w", "tau")]
     shown = [roles.speed, roles.torque, roles.oil, *([roles.viscosity] if roles.viscosity else []), *ends]
     given = [s.reads for s in campaign.given]
-    plant = Plant(flat, (), given, tuple(dict.fromkeys(shown)))
+    does = {p.name: [path for key in DOES if (path := f"{p.name}.{key}") in flat.index] for p in spec.parts}
+    plant = Plant(flat, (), given, tuple(dict.fromkeys([*shown, *(path for paths in does.values() for path in paths)])))
     o = Observed(plant, campaign, (), oils, point)
     values = dict(zip(plant.shown, o.outputs().T, strict=True))
     if not (fine := np.isfinite(values[roles.oil])).any():
@@ -145,4 +149,5 @@ def ranges_of(
     known |= {"mounting"} if len(set(campaign.mounting)) > 1 else set()
     known |= {f"still: {s.name}" for s in campaign.read if campaign.still(s)}
     rise = max(float(np.median((T - room)[fine])), 1.0)
-    return Ranges(low, mid, high, max(loss, 1e-3), rise, frozenset(known))
+    powers = {part: sum(float(np.median(np.abs(values[p][fine]))) for p in paths) for part, paths in does.items()}
+    return Ranges(low, mid, high, max(loss, 1e-3), rise, frozenset(known), powers)

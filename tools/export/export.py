@@ -39,6 +39,7 @@ def export(
     extras: str | Path | None = None,
     uncertainty: bool = False,
     constant: Sequence[str] = (),
+    real_time: str | None = None,
     ssp: Sequence[str] = (),
 ) -> Exported:
     """Write a rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs.
@@ -61,6 +62,8 @@ def export(
         extras: folder for parameter sets and a reference result
         uncertainty: with standard deviations, such as oil.T.sd
         constant: parameters that become constants of its code, by name, part or pattern, and stand in no file of it
+        real_time: longest communication step, such as "10 ms", in which its solver takes one step without control of
+            its error; what that costs at most and what it is wrong by are told
         ssp: parts of each FMU of a system, "NAME=PART,PART"; the rest is one FMU
 
     Raises:
@@ -89,8 +92,16 @@ def export(
         audit=audit,
         uncertainty=uncertainty,
         constants=constant,
+        real_time=None if real_time is None else _task(real_time),
     )
     return export_system(ssp, asked) if ssp else export_rig(asked)
+
+
+def _task(text: str) -> float:
+    step = to_si(text, "s", name="--real-time")
+    if not step > 0:
+        raise ScenarioError(f"--real-time {text}: must be above 0.")
+    return step
 
 
 def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (), trust: bool = False) -> TimeSeries:

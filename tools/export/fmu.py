@@ -41,6 +41,7 @@ from .extras import (
     text_of,
     write_extras,
 )
+from .real_time import RealTime, measure
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
@@ -68,6 +69,7 @@ class Asked:
     audit: bool
     uncertainty: bool
     constants: Sequence[str]
+    real_time: float | None
 
     def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
@@ -122,10 +124,16 @@ def export_rig(asked: Asked) -> Exported:
     sets = sets_of_oils(setting, kept, told=asked.with_origins, hidden=hidden)
     options["others"] = Related(sets, experiment(flat, duty, run))
     options["drawn"] = figures_of(setting.spec.assembly(), flat, start, run)
+    measured: list[RealTime] = []
+
+    def verify(fmu: Path, code: str) -> Sequence[tuple[str, str]]:
+        if asked.real_time is None:
+            return check_fmu(fmu, flat, duty, run)
+        measured.append(measure(fmu, code, flat, duty, start, asked.fmi, asked.real_time))
+        return measured[0].rows
+
     with progress_bar() as options["progress"]:
-        write_fmu(
-            setting, flat, asked.out, hidden=hidden, verify=lambda fmu: check_fmu(fmu, flat, duty, run), **options
-        )
+        write_fmu(setting, flat, asked.out, hidden=hidden, verify=verify, real_time=asked.real_time, **options)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if asked.with_origins else None
     written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins, hidden)
@@ -144,6 +152,7 @@ def export_rig(asked: Asked) -> Exported:
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "constants": [q.name for q in whole.parameters if q.name in hidden],
+        "real_time": measured[0].as_dict() if measured else None,
         "extras": [str(path) for path in written],
         "unchecked": find_unchecked(setting, flat),
     }

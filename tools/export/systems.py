@@ -40,7 +40,7 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
     if asked.out.suffix.lower() == ".fmu":
         raise ScenarioError(f"-o {asked.out}: --ssp writes a system of FMUs. Its name must end in .ssp.")
     given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
-    given_up["--constant"] = bool(asked.constants)
+    given_up |= {"--constant": bool(asked.constants), "--real-time": asked.real_time is not None}
     if refused := [option for option, is_asked in given_up.items() if is_asked]:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(asked.platform)

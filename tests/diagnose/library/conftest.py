@@ -16,6 +16,7 @@ from gearheat.scenarios.measured.table import Sensor
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.diagnose.library.cause import Cause, Ranges
 from gearheat.tools.diagnose.library.registry import library
+from gearheat.tools.diagnose.setting import DOES
 
 #: All that may be known of the rows of a campaign.
 ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "logs", "still: T_wall", "still: T_oil"})
@@ -64,7 +65,9 @@ def _case(name: str) -> Case:
     high = {k: v + span.get(k, 0.8 * v) / 2 for k, v in mid.items()}
     rise = max(mid["T"] - scenario.operating_point[f"{roles.room}.T"], 5.0)
     power = sum(value(found, f"{e}.w") * value(found, f"{e}.tau") for e in roles.ends)
-    ranges = Ranges(low, mid, high, abs(power), rise, ALL_KNOWN)
+    does = {p.name: [path for key in DOES if (path := f"{p.name}.{key}") in flat.index] for p in scenario.spec.parts}
+    powers = {part: sum(abs(value(found, path)) for path in paths) for part, paths in does.items()}
+    ranges = Ranges(low, mid, high, abs(power), rise, ALL_KNOWN, powers)
     return Case(scenario, roles, sensors, ranges, library(roles, ranges, sensors), found)
 
 

@@ -11,6 +11,7 @@ from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
 from gearheat.tools.diagnose.library.cause import Row, as_array
 from gearheat.tools.diagnose.library.check import parameters, problems
+from gearheat.tools.diagnose.library.forms import BY_LAW
 from gearheat.tools.diagnose.library.registry import library
 
 RIGS = tuple(list_rigs())
@@ -110,15 +111,19 @@ def test_extra_parts_of_all_causes_change_nothing(case, rig):
 def test_the_size_is_the_power_of_all_parts_at_the_reference(case, rig, cause):
     c = case(rig)
     x = c.cause(cause)
-    for form in [f for f in x.forms if not f.regime][:2]:
+    general = [f for f in x.forms if not f.regime]
+    for form in general[:2] + [f for f in general if f.name == BY_LAW]:
         spec = c.scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
         theta = {"P_ref": 0.01 * c.ranges.loss} | {s.name: float(s.at(0.0)) for s in form.shapes}
         row = Row(base=parameters(spec), sensors=dict(c.ranges.mid))
         values = {k: float(v) for k, v in form.values(theta, row).items()}
         found = steady(spec.flat(), {**c.scenario.operating_point, **values})
-        power = sum(found[f"{p.name}.P"][0] for p in form.parts)
         acting = {k.partition(".")[0] for k in values}
-        assert acting <= {p.name for p in form.parts}
+        if form.parts:
+            power = sum(found[f"{p.name}.P"][0] for p in form.parts)
+            assert acting <= {p.name for p in form.parts}
+        else:
+            power = sum(found[f"{p}.P_loss"][0] - c.nominal[f"{p}.P_loss"][0] for p in acting)
         assert power == pytest.approx(theta["P_ref"], rel=0.05)
         assert found[c.roles.oil][0] >= c.nominal[c.roles.oil][0] - 1e-3
 

@@ -94,6 +94,10 @@ class Noise:
         return replace(self, scales=most_likely(known + fixed, self.loose, residual, self.scales))
 
 
+#: Half widths of its prior to which a cause is followed.
+OUT = 2.0
+
+
 class Problem:
     """Campaigns of one rig; causes act in the first.
 
@@ -116,6 +120,7 @@ class Problem:
     ) -> None:
         self.campaigns, self.day_sd, self.aside, self.more = tuple(campaigns), day_sd, aside, more
         self.data = campaigns[0]
+        self._bends: dict[Formula, list[tuple[Acting, np.ndarray]]] = {}
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
         self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
@@ -228,6 +233,20 @@ class Problem:
             return frozenset([aside.number])
         effect = np.abs(dict(self.inputs(look))[aside.sensor][:, aside.number])
         return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
+
+    def bends(self, formulas: Sequence[Formula]) -> list[list[tuple[Acting, np.ndarray]]]:
+        """Of each formula, as the file has the rig: far out, and its secant less its slope (M,), of one half width."""
+        at, new = np.zeros(self.nz + 1), [f for f in formulas if f not in self._bends]
+        slopes = self.data.tangents(at, [], [(f, np.zeros(f.size)) for f in new]) if new else np.empty(0)
+        without = self.data.shown_by(at, []) if new else np.empty(0)
+        for f, slope in zip(new, slopes.T, strict=True):
+            found = self._bends.setdefault(f, [])
+            for size in np.clip((-OUT, OUT), *f.limits):
+                acting, bend = Acting(f, np.r_[size, np.zeros(f.size - 1)]), np.zeros(self.m)
+                if size and np.isfinite(shown := self.data.shown_by(at, [(f, acting.t)])).all():
+                    bend[self.own] = (shown - without) / size - slope
+                    found.append((acting, bend))
+        return [self._bends[f] for f in formulas]
 
     def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
         """Effects (M, k) of one prior half width of each candidate beside what acts.

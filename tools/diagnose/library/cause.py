@@ -121,7 +121,7 @@ class Form:
         spread: "" for one size; "test", "mounting" or "walk" where the size is the standard deviation of independent
             sizes of every test, of every mounting, or of the steps from each test to the next
         regime: quantity and side it is limited to ("speed above"), with the shape that holds the threshold; for words
-        only_adds: whether its size cannot be below zero, whatever the cause's can
+        low: its size cannot be below this, whatever the cause's can
     """
 
     name: str = ""
@@ -135,7 +135,7 @@ class Form:
     pace: Callable[[Theta, Row], Num] | None = None
     spread: str = ""
     regime: Mapping[str, str] = field(default_factory=dict)
-    only_adds: bool = False
+    low: float = -np.inf
 
 
 @dataclass(frozen=True)
@@ -180,6 +180,7 @@ class Ranges:
         rise: typical rise of the oil over the room [K]
         known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs", and
             "still: NAME" of sensors that may hang
+        powers: part -> typical loss, or heat flow rate, of the nominal [W]
     """
 
     low: Mapping[str, float]
@@ -188,6 +189,7 @@ class Ranges:
     loss: float
     rise: float
     known: frozenset[str] = frozenset({"order", "dwell"})
+    powers: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def conductance(self) -> float:

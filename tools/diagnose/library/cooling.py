@@ -12,7 +12,7 @@ from ....model.parts.free_form import step
 from .cause import Cause, Form, Num, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -29,10 +29,11 @@ def causes(at: Context) -> Iterator[Cause]:
     roles = at.roles
     air = [f"{name}.surface" for name in roles.surfaces]
     if air:
-        yield _conducting(at, "cooling.air", air)
+        yield _beside_own_law(_conducting(at, "cooling.air", air), roles.surfaces, at)
         yield from emissivity(at)
     if roles.room and (roles.foundation or air):
-        yield _conducting(at, "cooling.foundation", [roles.bodies_of(name)[0] for name in roles.foundation] or air[:1])
+        ports = [roles.bodies_of(name)[0] for name in roles.foundation] or air[:1]
+        yield _beside_own_law(_conducting(at, "cooling.foundation", ports), roles.foundation, at)
     if roles.contacts:
         yield contact(at)
     if roles.oil_side:
@@ -50,6 +51,11 @@ def _conducting(at: Context, name: str, ports: Sequence[str]) -> Cause:
     """A cause of the table that is an extra conductance from some ports to the room."""
     known = entry(name, at)
     return known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
+
+
+def _beside_own_law(cause: Cause, parts: Sequence[str], at: Context) -> Cause:
+    """A cause that is a conductance with forms by which parts between the machine and the room conduct more or less."""
+    return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / at.ranges.rise)
 
 
 def emissivity(at: Context) -> Iterator[Cause]:

@@ -11,7 +11,7 @@ from ....model.laws.smooth import smooth_abs
 from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
-from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 
 #: What changes values of the machine.
 Changes = Callable[[Theta, Row], Values]
@@ -22,6 +22,12 @@ ONE_PLACE = 0.5
 BESIDE = 0.25
 #: Of each side of a regime: as likely for every cause.
 SIDE = 0.05
+#: Share of a cause's prior of the forms by which it is a factor on a law that the machine has.
+OWN_LAW = 0.5
+#: What they are called.
+BY_LAW = "by its own law"
+#: Share of what a law says that may be missing.
+MOST_LESS = 0.95
 #: How gradually a form usually sets in at a threshold, over the range of its quantity.
 USUAL = 0.04
 #: Share of the middle speed below which what follows the speed no longer does.
@@ -239,6 +245,29 @@ def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Chan
     """
     exponents = paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
     return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
+
+
+def beside_own_law(cause: Cause, at: Context, places: Mapping[str, Sequence[str]], per: float = 1.0) -> Cause:
+    """The cause with forms by which it is a factor on what the machine's parts do by their own laws.
+
+    Args:
+        cause: with its other forms
+        at: what it is made for
+        places: parts at each place
+        per: size of the cause that is one watt of theirs, at the middle of the data
+    """
+    powers = {name: per * sum(at.ranges.powers.get(part, 0.0) for part in parts) for name, parts in places.items()}
+    paths = {name: at.roles.scaled(*places[name]) for name, power in powers.items() if power > 0}
+
+    def form(names: Iterable[str], words: str) -> Form:
+        own, power = [path for name in names for path in paths[name]], sum(powers[name] for name in names)
+        return Form(words, values=factors(own, cause.size.name, lambda size: 1 + size / power), low=-MOST_LESS * power)
+
+    if not any(paths.values()):
+        return cause
+    law = weighed([form(paths, BY_LAW)], [form((name,), f"{name}, {BY_LAW}") for name in paths])
+    groups = ((1 - OWN_LAW, cause.forms), (OWN_LAW, law))
+    return replace(cause, forms=tuple(replace(f, weight=s * f.weight) for s, forms in groups for f in forms))
 
 
 def linear(size: Num) -> Num:

@@ -11,7 +11,7 @@ from ....model.machines.roles import Place
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras, Keys, as_they_are
-from .forms import Context, Regime, weighed
+from .forms import Context, Regime, beside_own_law, weighed
 
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
@@ -36,7 +36,7 @@ def causes(at: Context) -> Iterator[Cause]:
     """
     places = at.roles.places
     if wet := _stirring(at):
-        yield extra_loss(at, "losses.churning", wet)
+        yield beside_own_law(extra_loss(at, "losses.churning", wet), at, {p.name: p.parts for p in wet})
         level = extra_loss(at, "losses.oil_level", wet[:1])
         yield replace(level, forms=tuple(_wetting(form, at) for form in level.forms))
         yield extra_loss(at, "losses.windage", wet[:1])
@@ -47,9 +47,9 @@ def causes(at: Context) -> Iterator[Cause]:
     for name in RUBBING:
         yield from scaled(at, name)
     if seals := places["seal"]:
-        yield extra_loss(at, "losses.seal_drag", seals)
+        yield beside_own_law(extra_loss(at, "losses.seal_drag", seals), at, {p.name: p.parts for p in seals})
     if teeth := places["teeth"]:
-        yield extra_loss(at, "losses.mesh_friction", teeth)
+        yield beside_own_law(extra_loss(at, "losses.mesh_friction", teeth), at, {p.name: p.parts for p in teeth})
         if at.both_ways:
             yield extra_loss(at, "losses.mesh_direction", teeth, _sides)
         yield film_starvation(at, teeth)
@@ -63,7 +63,7 @@ def extra_loss(at: Context, name: str, places: Sequence[Place], as_keys: Keys = 
     forms = Extras(known.part, at).losses(places, shapes, known.regimes, as_keys, heats)
     if known.rubs:  # what sets in at a speed, a load or a temperature only adds: something begins to rub there
         onsets = tuple(Regime.WORDS.values())
-        forms = tuple(replace(f, only_adds=f.regime.get("quantity", "").startswith(onsets)) for f in forms)
+        forms = tuple(replace(f, low=0.0) if f.regime.get("quantity", "").startswith(onsets) else f for f in forms)
     return known.with_forms(forms)
 
 

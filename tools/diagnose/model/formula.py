@@ -91,7 +91,7 @@ class Formula:
     def limits(self) -> tuple[float, float]:
         """Lowest and highest size, in prior half widths."""
         size = self.cause.size
-        return 0.0 if self.form.only_adds else size.low / size.sd, size.high / size.sd
+        return max(self.form.low, size.low) / size.sd, size.high / size.sd
 
     def theta(self, t: np.ndarray) -> dict[str, float]:
         """Size and shapes in their units."""

@@ -7,27 +7,17 @@ same steps run the model freely. Inputs are means over a sample and hold during 
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ....fmu.batch_library import share_rows
 from ..library.knobs import Knob
-from .plant import Plant
+from .plant import Plant, library, record
 from .windows import Windows
 
-#: The method: two implicit stages of second order, L-stable and stiffly accurate.
-GAMMA = 1.0 - 0.5**0.5
-#: Newton's corrections at most.
-MOST = 30
-#: Size over the nominals at which they end.
-SETTLED = 1e-5
-#: A correction is no longer than so many nominals.
-LONG = 2.0
-#: At first.
-SHORT = 0.3
-#: From the given one on: a relay may throw it about.
-SHORTER = 6
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
 #: Standard deviation at the start of a state that no sensor reads [K].
@@ -37,8 +27,9 @@ SCATTER = 1.0
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
-#: A reading that is missing scatters so much [K].
-MISSING = 1e4
+#: Windows that a thread takes at a time, those that go side by side; and those between two words on progress.
+SIDE = 8
+BLOCK = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +74,8 @@ class Filter:
         )
         #: Scatter of each reading about the model [K] (reads,).
         self.scatter = np.full(len(read), SCATTER)
-        self.nx, self.n_w = plant.nx, plant.nx + plant.nz
+        self.nx = plant.nx
         self.u_at = [plant.u_place[path] for path in plant.given]
-        self.p_at = [plant.place[path] for path in plant.knobs]
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
@@ -135,7 +125,7 @@ class Filter:
         return found
 
     def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """States at the start (N, nx), and their covariance (nx, nx)."""
+        """States at the start (N, nx), and their standard deviations (nx,)."""
         x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
         thermal = np.array([q.unit == "K" for q in self.plant.flat.states])
         own = [q.name.rpartition(".")[2] == "T" for q in self.plant.flat.states]
@@ -146,7 +136,7 @@ class Filter:
             if state >= 0:
                 x[:, state] = np.where(np.isfinite(first[:, j]), first[:, j], x[:, state])
                 sd[state] = self.scatter[j]
-        return x, np.diag(sd**2)
+        return x, sd
 
     def run(
         self,
@@ -167,9 +157,59 @@ class Filter:
             progress: called with the share done
         """
         order = np.argsort(-data.there.sum(axis=1), kind="stable")
-        found = _Pass(self, data.some(order), z[order], free, slopes and not free).through(progress)
+        found = self._follow(data.some(order), z[order], free, slopes and not free, progress or (lambda share: None))
         back = np.argsort(order)
-        return Passed(*(a[back] for a in found))
+        return Passed(*(found[f.name][back] for f in fields(Passed)))
+
+    def _follow(
+        self, data: Windows, z: np.ndarray, free: bool, slopes: bool, progress: Callable[[float], None]
+    ) -> dict[str, np.ndarray]:
+        """What `Passed` holds of windows by falling length."""
+        (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
+        p, dp, factor, shift, offset, by = self.settings(z)
+        x, sd = self.start(data, offset)
+        lengths = data.there.sum(axis=1)
+        logs = record(
+            n=n,
+            L=length,
+            k=k,
+            free=int(free),
+            length=lengths,
+            counts=data.counts,
+            given=data.given,
+            read=data.read,
+            factor=factor,
+            shift=shift,
+            offset=offset,
+            u=self.plant.u,
+            p=p,
+            dp=dp[:, :, :k],
+            by=by[:, :k],
+            input_of=np.array([self.given.index(o.sensor) if o.sensor in self.given else -1 for o in self.knobs]),
+            gain=np.array([o.gain for o in self.knobs], dtype=np.int64),
+            u_at=np.array(self.u_at),
+            state_of=self.state_of,
+            x0=x,
+            z0=self.plant.flat.starts("algebraic"),
+            P0=sd**2,
+            Q=self.noise**2,
+            scatter=self.scatter,
+            step=np.array([data.step]),
+            tails=np.array([TAILS]),
+        )
+        found = {"log_likelihood": np.zeros(n), "slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
+        found |= {name: np.full(data.read.shape, np.nan) for name in ("error", "variance", "shown")}
+        places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
+        for first in range(0, n, BLOCK):
+            last = min(first + BLOCK, n)
+
+            def followed(begin: int, end: int, at: int = first) -> int:
+                return int(run(*places, at + begin, at + end))
+
+            share_rows(followed, last - first, SIDE, 0)
+            progress(float(lengths[:last].sum() / lengths.sum()))
+        found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
+        return found
 
 
 def _first(read: np.ndarray) -> np.ndarray:
@@ -177,165 +217,3 @@ def _first(read: np.ndarray) -> np.ndarray:
     there = np.isfinite(read)
     at = there.argmax(axis=1)
     return np.asarray(np.take_along_axis(read, at[:, None], axis=1)[:, 0])
-
-
-class _Pass:
-    """Windows by falling length, step by step; those that have ended are left out."""
-
-    def __init__(self, own: Filter, data: Windows, z: np.ndarray, free: bool, slopes: bool) -> None:
-        self.own, self.data, self.free, self.slopes = own, data, free, slopes
-        self.plant, self.nx, self.k = own.plant, own.nx, z.shape[1]
-        self.p, self.dp, self.factor, self.shift, self.offset, self.by = own.settings(z)
-        self.lengths = data.there.sum(axis=1)
-        self.Q = np.diag(own.noise**2)
-
-    def through(self, progress: Callable[[float], None] | None) -> tuple[np.ndarray, ...]:
-        n, length, reads = self.data.read.shape
-        x, P = self.own.start(self.data, self.offset)
-        P = np.tile(P, (n, 1, 1))
-        w = np.concatenate([x, np.tile(self.plant.flat.starts("algebraic"), (n, 1))], axis=1)
-        S = np.zeros((n, self.nx, self.k))
-        self.likelihood, self.g, self.H = np.zeros(n), np.zeros((n, self.k)), np.zeros((n, self.k, self.k))
-        error, variance, shown = (np.full((n, length, reads), np.nan) for _ in range(3))
-        for t in range(int(self.lengths.max(initial=0))):
-            m = int((self.lengths > t).sum())
-            step = _Step(self, w[:m], t)
-            y = step.mean + self.offset[:m]
-            e, R = self._left(y, t)
-            shown[:m, t] = y
-            free = self.free & self.data.counts[:m, t]
-            if free.all():
-                error[:m, t], w[:m] = e, step.w
-                continue
-            H_x, A = step.mean_by[:, :, self.k :], step.end_by[:, :, self.k :]
-            V, gain, P[:m] = self._updated(P[:m], H_x, A, R)
-            gain[free] = 0.0
-            by_z = step.mean_by[:, :, : self.k] + H_x @ S[:m]
-            S[:m] = step.end_by[:, :, : self.k] + A @ S[:m]
-            by_z = by_z + self.by
-            S[:m] -= gain @ by_z
-            w[:m] = step.w
-            w[:m, : self.nx] += (gain @ e[:, :, None])[:, :, 0]
-            error[:m, t], variance[:m, t] = e, np.einsum("nii->ni", V)
-            self._count(t, e, V, by_z)
-            if progress is not None and t % 50 == 0:
-                progress(float(np.minimum(self.lengths, t).sum() / self.lengths.sum()))
-        error[~self.data.counts | ~np.isfinite(self.data.read).any(axis=2)] = np.nan
-        return self.likelihood, self.g, self.H, error, variance, shown
-
-    def _left(self, y: np.ndarray, t: int) -> tuple[np.ndarray, np.ndarray]:
-        """Errors (m, reads) and variances of the readings."""
-        e = self.data.read[: len(y), t] - y
-        missing = ~np.isfinite(e)
-        return np.where(missing, 0.0, e), np.where(missing, MISSING, self.own.scatter) ** 2
-
-    def _updated(
-        self, P: np.ndarray, C: np.ndarray, A: np.ndarray, R: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Covariance of the errors, gain, and covariance of the states after a sample.
-
-        A walk that gains Q in a sample has Q/3 in the mean over it, and Q/2 in common with its end.
-        """
-        direct = np.zeros((C.shape[1], self.nx))
-        seen = self.own.state_of >= 0
-        direct[np.flatnonzero(seen), self.own.state_of[seen]] = 1.0
-        V = C @ P @ C.transpose(0, 2, 1) + direct @ self.Q @ direct.T / 3
-        V[:, np.arange(C.shape[1]), np.arange(C.shape[1])] += R
-        cross = A @ P @ C.transpose(0, 2, 1) + self.Q @ direct.T / 2
-        gain = np.linalg.solve(V, cross.transpose(0, 2, 1)).transpose(0, 2, 1)
-        after = A @ P @ A.transpose(0, 2, 1) + self.Q - gain @ cross.transpose(0, 2, 1)
-        return V, gain, (after + after.transpose(0, 2, 1)) / 2
-
-    def _count(self, t: int, e: np.ndarray, V: np.ndarray, by_z: np.ndarray) -> None:
-        """Add the samples that count: a multivariate t, as least squares that are weighted anew at every pass."""
-        m, reads = e.shape
-        counts = self.data.counts[:m, t]
-        inverse = np.linalg.inv(V)
-        z = (inverse @ e[:, :, None])[:, :, 0]
-        distance = (z * e).sum(axis=1)
-        weight = (TAILS + reads) / (TAILS + distance) * counts
-        self.likelihood[:m] -= counts * (
-            0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS)
-        )
-        if self.slopes:
-            self.g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
-            self.H[:m] += weight[:, None, None] * (by_z.transpose(0, 2, 1) @ inverse @ by_z)
-
-
-class _Step:
-    """One sample of m windows: unknowns at its end, mean readings, and slopes of both by knobs and start."""
-
-    def __init__(self, run: _Pass, w: np.ndarray, t: int) -> None:
-        self.run, self.plant, self.nx, self.m = run, run.plant, run.nx, len(w)
-        given = run.data.given[: self.m, t]
-        self.u = np.tile(self.plant.u, (self.m, 1))
-        self.u[:, run.own.u_at] = run.factor[: self.m] * given - run.shift[: self.m]
-        self.p, self.given = run.p[: self.m], given
-        self.h = run.data.step * GAMMA
-        x = w[:, : self.nx]
-        w1, A1 = self._stage(w, x)
-        rate = (w1[:, : self.nx] - x) / self.h
-        w2, A2 = self._stage(w1, x + run.data.step * (1 - GAMMA) * rate)
-        self.w = w2
-        if run.free and run.data.counts[: self.m, t].all():
-            y1, y2 = (self.plant.readings(w, self.u, self.p)[0] for w in (w1, w2))
-            self.mean = (1 - GAMMA) * y1 + GAMMA * y2
-            return
-        dx = np.zeros((self.m, self.nx, run.k + self.nx))
-        dx[:, :, run.k :] = np.eye(self.nx)
-        d1 = self._turn(w1, A1, dx)
-        ahead = dx + run.data.step * (1 - GAMMA) * (d1[:, : self.nx] - dx) / self.h
-        d2 = self._turn(w2, A2, ahead)
-        (y1, by1), (y2, by2) = self._read(w1, d1), self._read(w2, d2)
-        self.mean = (1 - GAMMA) * y1 + GAMMA * y2
-        self.mean_by = (1 - GAMMA) * by1 + GAMMA * by2
-        self.end_by = d2[:, : self.nx]
-
-    def _matrix(self, J: np.ndarray) -> np.ndarray:
-        A = J.copy()
-        A[:, : self.nx] *= -self.h
-        A[:, np.arange(self.nx), np.arange(self.nx)] += 1.0
-        return A
-
-    def _stage(self, w: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Solve x_new = x + h gamma rate(w_new): unknowns, and the system's matrix there."""
-        w = w.copy()
-        for n in range(MOST):
-            r, J = self.plant.rates(w, self.u, self.p)
-            A = self._matrix(J)
-            left = r.copy()
-            left[:, : self.nx] = w[:, : self.nx] - x - self.h * r[:, : self.nx]
-            change = np.linalg.solve(A, left[:, :, None])[:, :, 0] / self.plant.scale
-            size = np.abs(change).max(axis=1)
-            longest = LONG if n < SHORTER else SHORT
-            w -= change * np.minimum(1.0, longest / np.maximum(size, 1e-300))[:, None] * self.plant.scale
-            if size.max() < SETTLED:
-                break
-        return w, A
-
-    def _own(self, by: np.ndarray) -> np.ndarray:
-        """Slopes by the plant's knobs and inputs (m, rows, ...) along the knobs here (m, rows, k)."""
-        run, paths = self.run, len(self.plant.knobs)
-        found = by[:, :, :paths] @ run.dp[: self.m]
-        for j, knob in enumerate(run.own.knobs):
-            if knob.sensor in run.own.given:
-                i = run.own.given.index(knob.sensor)
-                turn = -run.factor[: self.m, i] * self.given[:, i] if knob.gain else -np.ones(self.m)
-                found[:, :, j] += by[:, :, paths + i] * turn[:, None]
-        return np.asarray(found)
-
-    def _turn(self, w: np.ndarray, A: np.ndarray, dx: np.ndarray) -> np.ndarray:
-        """Slopes of the unknowns of a solved stage (m, n_w, k + nx)."""
-        (by,) = self.plant.slopes(w, self.u, self.p)
-        own = self._own(by)
-        b = np.zeros((self.m, A.shape[1], dx.shape[2]))
-        b[:, : self.nx] = dx
-        b[:, : self.nx, : self.run.k] += self.h * own[:, : self.nx]
-        b[:, self.nx :, : self.run.k] = -own[:, self.nx :]
-        return np.asarray(np.linalg.solve(A, b))
-
-    def _read(self, w: np.ndarray, dw: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        y, by_w, by = self.plant.reading_slopes(w, self.u, self.p)
-        slopes = by_w @ dw
-        slopes[:, :, : self.run.k] += self._own(by)
-        return y, slopes

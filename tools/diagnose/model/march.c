@@ -488,26 +488,3 @@ __attribute__((visibility("default"))) int march(const Plant *plant, const Duty 
 static void across(lanes *own, const double *rows, whole from, whole n, whole width) {
   EACH for (whole i = 0; i < width; i++) own[i][l] = rows[(from + l < n ? from + l : n - 1) * width + i];
 }
-
-/* The same back. */
-static void apart(double *rows, const lanes *own, whole from, whole n, whole width) {
-  for (int l = 0; l < LANES && from + l < n; l++)
-    for (whole i = 0; i < width; i++) rows[(from + l) * width + i] = own[i][l];
-}
-
-/* A formula at n points, a row each: what it has in two results of so many entries; 0 where memory runs out. */
-__attribute__((visibility("default"))) int many(const Plant *plant, Formula formula, whole n, const double *w,
-                                                const double *u, const double *p, double *first, whole entries,
-                                                double *second, whole others) {
-  void *block;
-  lanes *own = aligned(plant->nw + plant->nu + plant->np + entries + others, &block);
-  if (!own) return 0;
-  lanes *u_own = own + plant->nw, *p_own = u_own + plant->nu, *a = p_own + plant->np, *b = a + entries;
-  for (whole from = 0; from < n; from += LANES) {
-    across(own, w, from, n, plant->nw), across(u_own, u, from, n, plant->nu), across(p_own, p, from, n, plant->np);
-    formula(own, u_own, p_own, a, b);
-    apart(first, a, from, n, entries), apart(second, b, from, n, others);
-  }
-  free(block);
-  return 1;
-}

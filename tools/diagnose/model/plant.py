@@ -20,7 +20,6 @@ from ....fmu import emit
 from ....fmu.batch_library import address, instructions, load, widen
 from ....model.core.flat import FlatModel
 from ....model.core.flatten import flatten
-from ....model.errors import FmuError
 from ....model.machines.spec import Spec, assemble
 from ....model.parts.free_form import EXTRA_PARTS
 from ....scenarios.nuisances import Nuisance
@@ -85,32 +84,6 @@ class Plant:
         }
         self._compiled = Compiled([w, flat.u, flat.p], results)
         self.record = self._record(self._compiled)
-
-    def rates(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
-        """Rates of the states and residuals, and their Jacobian in w, at n points, a row each."""
-        return self._many("rates", w, u, p)
-
-    def slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
-        """Derivatives of rates and residuals by knobs and given inputs."""
-        return self._many("slopes", w, u, p)
-
-    def readings(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
-        """What is shown."""
-        return self._many("readings", w, u, p)
-
-    def reading_slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
-        """What is shown, its derivatives in w, and by knobs and given inputs."""
-        return [*self.readings(w, u, p), *self._many("reading_slopes", w, u, p)]
-
-    def _many(self, name: str, *points: np.ndarray) -> list[np.ndarray]:
-        given = [np.ascontiguousarray(v, dtype=float) for v in points]
-        found = [np.empty((len(given[0]), len(row))) for _, row in self._compiled.patterns[name]]
-        pairs = [(address(r), r.shape[1]) for r in (*found, np.empty((1, 0)))[:2]]
-        places = [address(v) for v in given]
-        record = ctypes.byref(self.record)
-        if not library().many(record, self._compiled.place(name), len(given[0]), *places, *pairs[0], *pairs[1]):
-            raise FmuError("there is not enough memory for the points. Give fewer at a time.")
-        return self._compiled.dense(name, *found)
 
     def _record(self, compiled: Compiled) -> Any:
         """The plant as the march through its runs knows it."""
@@ -190,7 +163,6 @@ class Compiled:
     def __init__(self, arguments: Sequence[Any], results: Mapping[str, Sequence[Any]]) -> None:
         #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
         self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
-        self.shapes = {name: [r.shape for r in found] for name, found in results.items()}
         names, texts = [f"i{k}" for k in range(len(arguments))], []
         for name, found in results.items():
             outputs = [ca.SX(r).nz[:] for r in found] + [ca.SX(0, 1)] * (2 - len(found))
@@ -199,20 +171,6 @@ class Compiled:
             texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
         self._library = _loaded("\n".join(texts))
 
-    def dense(self, name: str, *entries: np.ndarray) -> list[np.ndarray]:
-        """Results of a function as whole matrices (n, rows, columns), those of one column as (n, rows).
-
-        Args:
-            name: of the function
-            entries: of each result (n, entries)
-        """
-        found = []
-        for own, (begin, row), (rows, columns) in zip(entries, self.patterns[name], self.shapes[name], strict=True):
-            whole = np.zeros((len(own), rows, columns))
-            whole[:, row, np.repeat(np.arange(columns), np.diff(begin))] = own
-            found.append(whole[:, :, 0] if columns == 1 else whole)
-        return found
-
     def place(self, name: str) -> int:
         """Where a function lies in memory."""
         return ctypes.c_void_p.in_dll(self._library, f"place_{name}").value or 0
@@ -220,11 +178,11 @@ class Compiled:
 
 @cache
 def library() -> ctypes.CDLL:
-    """The march through runs, compiled."""
-    found = _loaded((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
+    """The march through runs and the filter of logs, compiled."""
+    sources = (Path(__file__).parent / name for name in ("march.c", "follow.c"))
+    found = _loaded("\n".join(source.read_text(encoding="utf-8") for source in sources))
     pointer, count = ctypes.c_void_p, ctypes.c_int64
-    found.march.argtypes = [*[pointer] * 3, *[count] * 2]
-    found.many.argtypes = [*[pointer] * 2, count, *[pointer] * 4, count, pointer, count]
+    found.march.argtypes = found.follow.argtypes = [*[pointer] * 3, *[count] * 2]
     return found
 
 
