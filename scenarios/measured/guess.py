@@ -146,8 +146,9 @@ def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], 
     nominal, found = Nominal(scenario), {}
     for sensor in sensors_of(scenario, card):
         column = numbers([cell for cell in cells.get(sensor.column, ()) if cell])
-        guessable = column is not None and len(column) > 0 and sensor.signs == (1.0, 1.0) and SI[sensor.kind] != "K"
-        positive = guessable and column.min() >= 0 and nominal.value(sensor.reads) < 0
+        guessable = sensor.signs == (1.0, 1.0) and SI[sensor.kind] != "K"
+        above = column is not None and len(column) > 0 and column.min() >= 0
+        positive = guessable and above and nominal.value(sensor.reads) < 0
         if (magnitude := said.get(sensor.name, positive or None)) is not None:
             signs = {} if magnitude else {"signs": [1.0, 1.0]}
             found[sensor.name] = CardSensor.model_validate({"reads": sensor.reads, "magnitude": magnitude, **signs})
