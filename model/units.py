@@ -137,6 +137,13 @@ def refuse_comma(text: str, name: str) -> None:
         )
 
 
+def _without_unit(name: str, value: object, written: str, unit: str) -> str:
+    """What is said of a number without a unit: how it may have been meant."""
+    target = unit.removesuffix("(difference)").strip()
+    usual = f'"{value} {USUAL[target]}" or ' if target in USUAL else ""
+    return f'{name} = {written} has no unit. Write {usual}"{value} {show_unit(unit)}" (expected a unit like {target}).'
+
+
 def to_si(value: object, unit: str, *, name: str = "value") -> float:
     """A value with its unit as a number in the SI unit `unit` of the model.
 
@@ -154,9 +161,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         raise ScenarioError(f'{name} = {value!r} is no value. Write a number with its unit, like "{example(unit)}".')
     if isinstance(value, int | float):
         if target != "1":
-            raise ScenarioError(
-                f'{name} = {value} has no unit. Write "{value} {show_unit(unit)}" (expected a unit like {target}).'
-            )
+            raise ScenarioError(_without_unit(name, value, str(value), unit))
         return _finite(float(value), name, value)
     refuse_comma(value, name)
     try:
@@ -166,10 +171,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
             f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".'
         ) from None
     if not written and target != "1":
-        usual = f'"{value} {USUAL[target]}" or ' if target in USUAL else ""
-        raise ScenarioError(
-            f'{name} = "{value}" has no unit. Write {usual}"{value} {show_unit(unit)}" (expected a unit like {target}).'
-        )
+        raise ScenarioError(_without_unit(name, value, f'"{value}"', unit))
     if written == target:
         return _finite(number, name, value)
     try:

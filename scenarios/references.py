@@ -7,7 +7,7 @@ from collections.abc import Container, Iterable, Mapping
 from contextlib import suppress
 from typing import Any
 
-from ..model.core.component import Component
+from ..model.core.component import Component, make
 from ..model.core.flat import Quantity
 from ..model.errors import ScenarioError, suggestion
 from ..model.machines.spec import Spec
@@ -53,7 +53,7 @@ def look_up(where: str, path: str, unit: str, types: Mapping[str, type[Component
         ScenarioError: the part has no such value, or one of another unit; all that is wrong with the part
     """
     name, _, key = path.partition(".")
-    part = types[name](name, **values)
+    part = make(types[name], name, values)
     sizes, declared = part.sizes(), {**part.parameters, **part.derived}
     if key not in sizes and not (key in declared and key in part.values):
         known = [*sizes, *declared]

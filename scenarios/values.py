@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.core.component import Component
+from ..model.core.component import Component, make
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
@@ -18,6 +18,7 @@ from ..model.parts import PARTS
 from ..model.units import in_unit, spell_unit, split_quantity, to_si
 from .document import ABOUT, sources_of
 from .entries import Entry, entry
+from .ranges import check_range
 from .shipped import FILES
 
 #: Key of the table of standard uncertainties of a part.
@@ -137,12 +138,16 @@ def in_range(where: str, raw: object, quantity: Quantity, *, sensible: bool = Tr
         theirs = unit_of(raw) if "(" not in quantity.unit else ""
         known = f"{in_unit(number, theirs, unit):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
+    if quantity.whole and value != round(value):
+        raise ScenarioError(f"{name} = {written} must be a whole number.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
     if sensible and value and np.isfinite(quantity.low) and not least <= abs(value) <= most:
         raise ScenarioError(
             f"{name} = {written} cannot be of a gearbox: expected {least:g} to {most:g} {unit} in size."
             " Check its unit and its exponent."
         )
+    if sensible:
+        check_range(name, written, value, quantity)
     return value
 
 
@@ -279,7 +284,7 @@ class _PartReader:
     def _check_component(self, complete: bool, failed: Iterable[str]) -> None:
         """What the part itself finds: missing values, unknown choices; without what follows from other problems."""
         try:
-            self.cls(self.name, **self.result.values)
+            make(self.cls, self.name, self.result.values)
         except GearheatError as error:
             excused = tuple(f"{key} is missing" for key in (*failed, *(guess(key, self.meanings) for key in failed)))
             for problem in error.problems:

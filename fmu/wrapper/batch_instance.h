@@ -28,7 +28,7 @@ static int refresh_algebra(Instance *m)
 {
     if (m->s.consistent) return 1;
     refresh_constants(m);
-    m->s.consistent = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c) < 0;
+    m->s.consistent = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c, -1) < 0;
     return m->s.consistent;
 }
 

@@ -1,1 +1,5 @@
 """The acausal machinery: declarations, connections, flattening. Knows no physics."""
+
+from ..expressions import shorten
+
+shorten()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from math import inf, nextafter
 from typing import Any, ClassVar
 
@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ..errors import ScenarioError, suggestion
+from ..expressions import as_expression
 from ..sources import LawUse, recording
 from ..units import text
 from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port, State, Variable, list_declared
@@ -64,6 +65,9 @@ Faults = Mapping[str, Mapping[str, float]]
 #: Of a part that is what it is: nothing of it can fail.
 SOUND: Faults = {}
 
+#: Parts kept, those of some rigs.
+KEPT = 500
+
 #: A relation and the expression of the value that tells whether it holds.
 Related = tuple[Relation, Any]
 
@@ -76,7 +80,7 @@ def equation(name: str, lhs: Any, rhs: Any) -> Equation:
         lhs: one side: a number or a CasADi expression
         rhs: the other side
     """
-    return Equation(name, *(side if type(side) is ca.SX else ca.SX(side) for side in (lhs, rhs)))
+    return Equation(name, *map(as_expression, (lhs, rhs)))
 
 
 class Component:
@@ -156,7 +160,7 @@ class Component:
         """Put expressions in the place of the parameters that follow from others; the laws they use."""
         own = [self.symbols[key] for key in self.derived]
         with recording() as uses:
-            found = [ca.SX(d.derived(self)) for d in self.derived.values() if d.derived is not None]
+            found = [as_expression(d.derived(self)) for d in self.derived.values() if d.derived is not None]
         for _ in own[1:]:  # one may follow from another, whatever their order
             found = ca.substitute(found, own, found)
         for key, expression in zip(tuple(self.derived), found, strict=True):
@@ -167,7 +171,8 @@ class Component:
         numbers = self._numbers([self.symbols[key] for key in self.derived])
         self.values |= {key: value for key, value in zip(self.derived, numbers, strict=True) if value is not None}
         return [
-            LawUse(u.law, {k: ca.substitute([ca.SX(x)], own, found)[0] for k, x in u.arguments.items()}) for u in uses
+            LawUse(u.law, {k: ca.substitute([as_expression(x)], own, found)[0] for k, x in u.arguments.items()})
+            for u in uses
         ]
 
     def _numbers(self, expressions: Sequence[Any]) -> list[float | None]:
@@ -215,7 +220,7 @@ class Component:
             expression: the expression
             values: parameters by key, in SI
         """
-        symbols = ca.symvar(ca.SX(expression))
+        symbols = ca.symvar(as_expression(expression))
         given = [float(values[symbol.name().removeprefix(f"{self.name}.")]) for symbol in symbols]
         return float(ca.Function("number", symbols, [expression])(*given))
 
@@ -232,12 +237,12 @@ class Component:
             remedy: what to do where it does not
             unit: of the number
         """
-        number = ca.SX(number)
+        number = as_expression(number)
         return Relation(self.name, name, value, low, high, remedy, unit, self.follows_from(number)), number
 
     def follows_from(self, expression: Any) -> tuple[str, ...]:
         """Paths of the parameters in an expression."""
-        held = {symbol.element_hash() for symbol in ca.symvar(ca.SX(expression))}
+        held = {symbol.element_hash() for symbol in ca.symvar(as_expression(expression))}
         return tuple(f"{self.name}.{k}" for k in self.parameters if self.symbols[k].element_hash() in held)
 
     def all_relations(self) -> Iterator[Related]:
@@ -303,3 +308,32 @@ class Component:
     def supplied_power(self) -> Iterable[Any]:
         """Powers that enter the model through this component from outside [W]."""
         return ()
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """A part by all that it follows from."""
+
+    kind: type[Component]
+    name: str
+    values: Mapping[str, Any] = field(compare=False)
+    text: str
+
+
+@lru_cache(KEPT)
+def _made(wanted: _Wanted) -> Component:
+    return wanted.kind(wanted.name, **wanted.values)
+
+
+def make(kind: type[Component], name: str, values: Mapping[str, Any]) -> Component:
+    """A part, made once of equal values: whoever reads, changes or assembles a rig asks for most of its parts again.
+
+    Args:
+        kind: its type
+        name: path of the part in the model
+        values: parameters, choices and start values by name, in SI
+
+    Raises:
+        ScenarioError: all missing, unknown and out-of-range values at once
+    """
+    return _made(_Wanted(kind, name, values, repr(values)))

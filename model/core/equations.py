@@ -11,6 +11,7 @@ from typing import Any
 import casadi as ca
 
 from ..errors import GearheatError, StructureError, suggestion
+from ..expressions import as_expression
 from .component import Component, Equation
 from .solve import Unknown, column
 
@@ -51,7 +52,7 @@ def rows_of(part: Component) -> list[Equation]:
 
 def _row(part: Component, e: Equation) -> Equation:
     for side in (e.lhs, e.rhs):
-        if (side if type(side) is ca.SX else ca.SX(side)).numel() != 1:
+        if as_expression(side).numel() != 1:
             shape = " x ".join(map(str, ca.SX(side).shape))
             raise StructureError(
                 f'{part.name}: a side of equation "{e.name}" has the shape {shape}. Each side is one number: yield an '
@@ -126,7 +127,7 @@ def check_symbols(rows: Sequence[Equation], unknowns: Sequence[Unknown], parts: 
     whole = column([r.residual for r in rows])
     strange = {s.element_hash() for s in ca.symvar(whole)} - known
     if strange:
-        held = {s: r for r in rows for s in ca.symvar(ca.SX(r.residual)) if s.element_hash() in strange}
+        held = {s: r for r in rows for s in ca.symvar(as_expression(r.residual)) if s.element_hash() in strange}
         raise StructureError(
             [
                 f'{r.name}: the symbol "{s.name()}" is not declared by any part. Declare it in the class (Parameter, '
@@ -146,6 +147,6 @@ def check_symbols(rows: Sequence[Equation], unknowns: Sequence[Unknown], parts: 
 
 def _no_number(expression: Any) -> bool:
     """Whether a constant in an expression is not a number."""
-    f = ca.Function("f", [column(ca.symvar(ca.SX(expression)))], [expression])
+    f = ca.Function("f", [column(ca.symvar(as_expression(expression)))], [expression])
     constants = (k for k in range(f.n_instructions()) if f.instruction_id(k) == ca.OP_CONST)
     return any(math.isnan(f.instruction_constant(k)) for k in constants)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..errors import StructureError
+from ..expressions import as_expression
 from .component import Equation
 from .connect import Assembly, floating, nets
 from .declare import Given, Port
@@ -174,7 +175,7 @@ class Faults:
 
     def _inputs_of(self, rows: Sequence[Equation]) -> list[str]:
         """The inputs that stand in some equations."""
-        held = {s.element_hash() for row in rows for s in ca.symvar(ca.SX(row.residual))}
+        held = {s.element_hash() for row in rows for s in ca.symvar(as_expression(row.residual))}
         return [path for h, path in self.known.inputs.items() if h in held]
 
     def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Equation]) -> tuple[list[list[Port]], list[Equation]]:

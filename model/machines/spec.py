@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from typing import Any
 
-from ..core.component import Component
+from ..core.component import Component, make
 from ..core.connect import Assembly
 from ..core.flat import FlatModel
 from ..core.flatten import flatten
@@ -148,7 +148,7 @@ def assemble(spec: Spec) -> Assembly:
             problems.append(f'{part.name}: there is no part type "{part.type}".{suggestion(part.type, spec.types)}')
             continue
         with problems:
-            parts.append(spec.types[part.type](part.name, **part.values))
+            parts.append(make(spec.types[part.type], part.name, part.values))
     problems.check()
     return Assembly(spec.name, spec.doc, tuple(parts), spec.connections)
 

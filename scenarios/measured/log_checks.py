@@ -43,7 +43,7 @@ def check_log(
     Raises:
         DataError: all that cannot be
     """
-    if (begin := _repeated(np.array([values[s.name] for s in sensors]).T)) is not None:
+    if (begin := _repeated([values[s.name] for s in sensors])) is not None:
         later, earlier = (lines[k] for k in begin)
         raise DataError(
             f"{name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
@@ -51,11 +51,14 @@ def check_log(
     check(_as_campaign(name, sensors, values, lines, step), Nominal(drive_by(scenario, sensors)), {})
 
 
-def _repeated(numbers: np.ndarray) -> tuple[int, int] | None:
-    """Begin of the first block of rows (n, k) that is there a second time, and of the first one; None without."""
-    if len(numbers) < 2 * ALIKE:
+def _repeated(columns: Sequence[np.ndarray]) -> tuple[int, int] | None:
+    """Begin of the first block of rows of columns (n,) that is there twice, and of the first one; None without."""
+    if len(columns[0]) < 2 * ALIKE:
         return None
-    row = np.unique(np.nan_to_num(numbers), axis=0, return_inverse=True)[1].ravel().astype(np.uint64)
+    row = np.zeros(len(columns[0]), dtype=np.uint64)
+    for column in columns:
+        row = (row ^ (np.nan_to_num(column) + 0.0).view(np.uint64)) * MULTIPLIER  # no zero is negative
+        row ^= row >> np.uint64(32)
     blocks = len(row) - ALIKE + 1
     block = np.zeros(blocks, dtype=np.uint64)
     for k in range(ALIKE):

@@ -7,7 +7,7 @@ import gzip
 import math
 import zlib
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from importlib import import_module
@@ -49,7 +49,7 @@ SPIKE_K = 8.0
 #: Share of temperatures that cannot be above which they have another unit.
 IMPOSSIBLE = 0.02
 #: Rows that are read at a time.
-BLOCK = 20_000
+BLOCK = 5_000
 #: Times what one sample in a thousand exceeds.
 SPIKE_TAIL = 2.5
 
@@ -121,52 +121,94 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     Raises:
         DataError: everything wrong with the file, at once
     """
-    header, cells, lines = _cells(path)
-    sensors, problems = place_sensor(sensors_of(scenario, card), header, card, path.name)
-    if not any(s.role == "read" for s in sensors):
-        problems.append(f"{path.name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
-    time_column = next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
-    if not time_column:
-        problems.append(f'{path.name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
-    raise_all(problems, path.name)
-    time, dated = _time(cells[time_column], time_column, path.name, lines, problems)
-    values = {s.name: _values(cells[s.column], s, path.name, lines, problems) for s in sensors}
-    raise_all(problems, path.name)
+    segment = card.columns.get("segment", "segment")
+
+    def used(header: Sequence[str]) -> Collection[str]:
+        sensors, column = _columns(header, scenario, card, path.name)
+        return {column, segment, *(s.column for s in sensors)}
+
+    cells, lines = read_columns(path, used)
+    return log_of(path.name, cells, lines, scenario, card)
+
+
+def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenario: Scenario, card: Card) -> Log:
+    """A log of a rig from its columns.
+
+    Args:
+        name: of the file
+        cells: header -> cells (n,), those of time with them
+        lines: line of each row in the file (n,)
+        scenario: the rig
+        card: its columns, units and sensors
+
+    Raises:
+        DataError: everything wrong with them, at once
+    """
+    (sensors, time_column), problems = _columns(list(cells), scenario, card, name), Problems()
+    time, dated = _time(cells[time_column], time_column, name, lines, problems)
+    values = {s.name: _values(cells[s.column], s, name, lines, problems) for s in sensors}
+    raise_all(problems, name)
     sensors, values = without_sign(scenario, sensors, values)
-    segments = cells.get(card.columns.get("segment", "segment"))
-    stretch, step = _stretches(time, segments, path.name, lines)
-    values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)
-    check_log(path.name, sensors, values, lines, step, scenario)
-    return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
+    stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
+    values, gross = _remove_outliers(name, values, sensors, stretch, lines)
+    check_log(name, sensors, values, lines, step, scenario)
+    return Log(name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
-def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
-    """Header, columns of cells, and the line of each row; as numbers, block by block, where cells are nothing else."""
+def find_time(header: Iterable[str]) -> str:
+    """The column of time, empty without one."""
+    return next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
+
+
+def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
+    """The sensors that a log has, and its column of time. Raises DataError where one is missing."""
+    sensors, problems = place_sensor(sensors_of(scenario, card), header, card, name)
+    if not any(s.role == "read" for s in sensors):
+        problems.append(f"{name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
+    time_column = find_time(header)
+    if not time_column:
+        problems.append(f'{name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
+    raise_all(problems, name)
+    return sensors, time_column
+
+
+def read_columns(
+    path: Path, used: Callable[[Sequence[str]], Collection[str]]
+) -> tuple[dict[str, Sequence[Any]], np.ndarray]:
+    """Used columns by header, the line of each row; cells as numbers, block by block, where they are nothing else.
+
+    Args:
+        path: CSV, CSV.gz or Parquet
+        used: which columns of a header
+
+    Raises:
+        DataError: it cannot be read, or its rows are not those of a table
+    """
     try:
         if path.suffix in (".parquet", ".pq"):
-            return _parquet(path)
+            return _parquet(path, used)
         with _open(path) as file:
             reader = csv.reader(file)
             header = [h.strip() for h in next(reader, [])]
             raise_all(header_problems(path.name, header), path.name)
-            lines: list[int] = []
-            parts: list[list[Sequence[Any]]] = [[] for _ in header]
+            kept, lines = used(header), []
+            parts: dict[str, list[Sequence[Any]]] = {h: [] for h in header if h in kept}
             rows = ((reader.line_num, row) for row in reader if any(row))
             while block := list(islice(rows, BLOCK)):
                 if ragged := next((line for line, row in block if len(row) != len(header)), None):
                     raise DataError(
                         [f"{path.name} line {ragged}: has not {len(header)} cells as the header has. Mend the row."]
                     )
-                lines += [line for line, _ in block]
-                for part, cells in zip(parts, zip(*(row for _, row in block), strict=True), strict=True):
-                    part.append(_compact(cells))
+                lines.append(np.array([line for line, _ in block]))
+                for h, k in zip(parts, map(header.index, parts), strict=True):
+                    parts[h].append(_compact([row[k] for _, row in block]))
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
     except (OSError, EOFError, UnicodeDecodeError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
     if not lines:
         raise DataError([f"{path.name}: holds no samples."])
-    return header, dict(zip(header, map(_join, parts), strict=True)), np.array(lines)
+    return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
 
 
 def _compact(cells: Sequence[str]) -> Sequence[Any]:
@@ -191,16 +233,20 @@ def _open(path: Path) -> IO[str]:
     return path.open(encoding="utf-8-sig")
 
 
-def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
+def _parquet(
+    path: Path, used: Callable[[Sequence[str]], Collection[str]]
+) -> tuple[dict[str, Sequence[Any]], np.ndarray]:
     try:
         table = import_module("pyarrow.parquet").read_table(reading(path))
+        kept = used(table.column_names)
     except ImportError:
         raise DataError([f'{path.name}: Parquet files need pyarrow: pip install "gearheat[parquet]".']) from None
-    columns = {name: table.column(name).to_pylist() for name in table.column_names}
-    return list(columns), columns, np.arange(1, table.num_rows + 1)
+    columns = {name: table.column(name).to_pylist() for name in table.column_names if name in kept}
+    return columns, np.arange(1, table.num_rows + 1)
 
 
-def _number(cell: Any) -> float:
+def parse_number(cell: Any) -> float:
+    """A cell as a number, NaN where it is empty. Raises TypeError or ValueError where it is none."""
     if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
         return math.nan
     if math.isinf(number := float(cell)):
@@ -214,7 +260,7 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     found = np.array(cells) if whole else np.full(len(cells), np.nan)
     for k, cell in enumerate([] if whole else cells):
         try:
-            found[k] = _number(cell)
+            found[k] = parse_number(cell)
         except (TypeError, ValueError):
             problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
     if not np.isfinite(found).any():
@@ -230,9 +276,11 @@ def _time(
     """Time [s] (n,), and whether it is a calendar's."""
     unit = split_unit(column)[1] or "s"
     found, kinds = np.full(len(cells), np.nan), Counter[str]()
+    if isinstance(cells, np.ndarray) and np.isfinite(cells).all():
+        found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
     for k, cell in enumerate(cells):
         try:
-            found[k], kind = _instant(cell)
+            found[k], kind = parse_time(cell)
             kinds[kind] += 1
         except (TypeError, ValueError, OverflowError):
             problems.append(
@@ -251,8 +299,8 @@ def _time(
     return found, dated
 
 
-def _instant(cell: Any) -> tuple[float, str]:
-    """A time as a number, and what it is. Raises ValueError where it is none."""
+def parse_time(cell: Any) -> tuple[float, str]:
+    """A time as a number, and what it is. Raises TypeError, ValueError or OverflowError where it is none."""
     if not isinstance(cell, datetime) and _is_number(cell):
         if not math.isfinite(number := float(cell)):
             raise ValueError
@@ -264,6 +312,8 @@ def _instant(cell: Any) -> tuple[float, str]:
 
 
 def _is_number(cell: Any) -> bool:
+    if isinstance(cell, str) and cell[4:5] == cell[7:8] == "-":  # a date
+        return False
     try:
         float(cell)
     except (TypeError, ValueError):

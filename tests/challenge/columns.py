@@ -1,83 +1,58 @@
-"""An SX function of CasADi for thousands of columns at once: every instruction once, as a numpy operation."""
+"""An SX function of CasADi for many columns at once: compiled, some columns side by side."""
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 import casadi as ca
 import numpy as np
+from gearheat.fmu import emit
+from gearheat.fmu.batch_library import instructions, load, widen
+from gearheat.fmu.fixed import wrapper
 
-_OPERATIONS: dict[str, Any] = {
-    "ASSIGN": np.positive,
-    "ADD": np.add,
-    "SUB": np.subtract,
-    "MUL": np.multiply,
-    "DIV": np.divide,
-    "NEG": np.negative,
-    "EXP": np.exp,
-    "LOG": np.log,
-    "LOG1P": np.log1p,
-    "EXPM1": np.expm1,
-    "POW": np.power,
-    "CONSTPOW": np.power,
-    "SQRT": np.sqrt,
-    "SQ": np.square,
-    "TWICE": lambda x, out: np.multiply(x, 2.0, out),
-    "INV": np.reciprocal,
-    "SIN": np.sin,
-    "COS": np.cos,
-    "TAN": np.tan,
-    "ATAN": np.arctan,
-    "TANH": np.tanh,
-    "FABS": np.fabs,
-    "FMIN": np.fmin,
-    "FMAX": np.fmax,
-    "SIGN": np.sign,
-    "EQ": np.equal,
-    "NE": np.not_equal,
-    "LT": np.less,
-    "LE": np.less_equal,
-    "NOT": np.logical_not,
-    "AND": np.logical_and,
-    "OR": np.logical_or,
-    "IF_ELSE_ZERO": lambda condition, x, out: np.copyto(out, np.where(np.asarray(condition) != 0, x, 0.0)),
+#: Around the function: columns lie beside each other, the last one fills what is left of the lanes.
+DRIVER = """
+__attribute__((visibility("default"))) void columns(int64_t m, const double *given, double *found)
+{
+    lanes in[ROWS_IN], out[ROWS_OUT];
+    for (int64_t from = 0; from < m; from += LANES) {
+        int64_t n = m - from < LANES ? m - from : LANES;
+        for (int64_t i = 0; i < ROWS_IN; i++)
+            for (int64_t l = 0; l < LANES; l++) in[i][l] = given[i * m + from + (l < n ? l : n - 1)];
+        lanes_whole(in, out);
+        for (int64_t i = 0; i < ROWS_OUT; i++)
+            for (int64_t l = 0; l < n; l++) found[i * m + from + l] = out[i][l];
+    }
 }
-_BY_CODE = {getattr(ca, f"OP_{name}"): operation for name, operation in _OPERATIONS.items()}
+"""
 
 
 class Columns:
-    """A function of dense vectors, for m columns.
+    """A function of dense vectors for any number of columns.
+
+    Args:
+        function: of CasADi, all of whose arguments and results are vectors
 
     Raises:
-        NotImplementedError: an operation of the function has no counterpart in numpy
+        FmuError: an operation has no C text, or the compiler fails
     """
 
-    def __init__(self, function: Any, m: int) -> None:
-        self._in = [np.zeros((function.size1_in(i), m)) for i in range(function.n_in())]
-        self._out = [np.zeros((function.size1_out(i), m)) for i in range(function.n_out())]
-        work = np.zeros((function.sz_w(), m))
-        now: dict[int, Any] = {}  # work place -> where its value lies at this point of the program
-        self._program: list[tuple[Any, tuple[Any, ...]]] = []
-        for k in range(function.n_instructions()):
-            code, takes, gives = (getattr(function, f"instruction_{what}")(k) for what in ("id", "input", "output"))
-            if code == ca.OP_CONST:
-                now[gives[0]] = float(function.instruction_constant(k))
-            elif code == ca.OP_INPUT:
-                now[gives[0]] = self._in[takes[0]][takes[1]]
-            elif code == ca.OP_OUTPUT:
-                self._program.append((np.positive, (now[takes[0]], self._out[gives[0]][gives[1]])))
-            elif code in _BY_CODE:
-                values = tuple(now[i] for i in takes)
-                now[gives[0]] = work[gives[0]]
-                self._program.append((_BY_CODE[code], (*values, now[gives[0]])))
-            else:
-                raise NotImplementedError(f"{function.name()}: CasADi operation {code} has no counterpart in numpy")
+    def __init__(self, function: Any) -> None:
+        rows = [function.size1_in(i) for i in range(function.n_in())]
+        self._ends = np.cumsum([function.size1_out(i) for i in range(function.n_out())])
+        given = ca.SX.sym("given", sum(rows))
+        found = ca.vertcat(*function.call(ca.vertsplit(given, np.cumsum([0, *rows]).tolist())))
+        whole = ca.Function("whole", [given], [ca.densify(found)], ["given"], ["found"], {"cse": True})
+        sizes = f"#define ROWS_IN {sum(rows)}\n#define ROWS_OUT {found.numel()}"
+        above = ["#include <math.h>\n#include <stdint.h>", sizes, wrapper("lanes.h")]
+        text = "\n".join([*above, emit.function(whole, "lanes_", "lanes"), DRIVER])
+        self._run = load(widen(text, instructions(), 8)).columns
+        self._run.argtypes, self._run.restype = [ctypes.c_int64, *[ctypes.c_void_p] * 2], None
 
     def __call__(self, *inputs: np.ndarray) -> list[np.ndarray]:
         """Outputs (rows, m) for inputs (rows, m)."""
-        for own, given in zip(self._in, inputs, strict=True):
-            own[:] = given
-        with np.errstate(all="ignore"):
-            for operation, arguments in self._program:
-                operation(*arguments)
-        return [out.copy() for out in self._out]
+        given = np.concatenate(inputs).astype(float)
+        found = np.empty((self._ends[-1], given.shape[1]))
+        self._run(given.shape[1], given.ctypes.data, found.ctypes.data)
+        return np.split(found, self._ends[:-1])

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 
 import casadi as ca
 import numpy as np
@@ -218,7 +218,7 @@ class ModelRig:
         ode, torque = ca.substitute([ode, torque], [flat.z], [z])
         given = ca.vertcat(n, load_torque, room, heat, factors)
         function = ca.Function("rig", [flat.x, given], [ode, torque], {"cse": True})
-        self._columns = lru_cache(8)(partial(Columns, function))
+        self._columns = Columns(function)
         (nu,) = ca.substitute([flat.y[flat.locate("oil.nu")[1]]], [flat.u, flat.p], [u, p])
         of_T = ca.Function("nu", [flat.x[flat.locate("oil.T")[1]], factors], [nu])
         self._T = np.arange(-20.0, 201.0, 2.0)
@@ -257,7 +257,7 @@ class ModelRig:
         tau = np.where(scene.direction == 1, scene.load, -scene.load)
         heats, factors = (scene.heat[p] for p in PLACES), (scene.factor[f] for f in FACTORS)
         given = np.array([scene.w, tau, scene.room + KELVIN, *heats, *factors])
-        return self._columns(T.shape[1])(T + KELVIN, given)
+        return self._columns(T + KELVIN, given)
 
 
 @cache

@@ -60,8 +60,10 @@ def sweep(name: str, argument: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     """Points, and values and slopes of every result there."""
     function, free = symbolic(name)
     x, i = places(name, argument), free.index(argument)
-    found = [function(vector(name, nominal(name) | {argument: at}, free)) for at in x]
-    return x, np.array([y.full().ravel() for y, _ in found]).T, np.array([s.full()[:, i] for _, s in found]).T
+    points = np.tile(vector(name, nominal(name), free)[:, None], len(x))
+    points[i] = x
+    values, slopes = (found.full() for found in function(points))  # a column a point, and a Jacobian a point
+    return x, values, slopes.reshape(len(values), len(x), len(free))[:, :, i]
 
 
 def kink(name: str, argument: str, x: np.ndarray, slopes: np.ndarray, result: int) -> float:

@@ -11,7 +11,7 @@ from source_trees import ROOT, modules, nodes_of
 #: Order of the floors, by the names under which they are installed below `gearheat`; those of one row stand side by
 #: side.
 ORDER = (
-    ("model.units", "model.errors", "model.files", "model.sources"),
+    ("model.units", "model.errors", "model.files", "model.sources", "model.expressions"),
     ("model.laws",),
     ("model.core",),
     ("model.parts",),
@@ -27,7 +27,7 @@ ORDER = (
     ("tools.diagnose.report",),
     ("tools.diagnose", "tools.solve", "tools.check"),
     ("tools.describe", "tools.export", "tools.films", "tools.rating"),
-    ("tools.build", "tools.compare", "tools.page", "tools.verify", "tools.docs"),
+    ("tools.build", "tools.compare", "tools.page", "tools.verify", "tools.docs", "tools.watch"),
     ("tools.bench", "api"),
     ("tools.desk",),
     ("tools.cli",),

@@ -63,6 +63,14 @@ def test_from_nothing_to_a_diagnosis_takes_25_commands_and_60_lines() -> None:
     assert 0 < len(written) + len(card.text.splitlines()) <= 60
 
 
+def test_two_name_plates_and_a_table_take_15_commands() -> None:
+    page = blocks((PAGES / "tutorials" / "first_hour.md").read_text(encoding="utf-8"))
+    commands = [command for block in page if block.language in ("sh", "console") for command in block.commands()]
+    assert len(commands) <= 15 and not [block for block in page if block.language == "diff"]
+    named = {words[1] for words, _ in commands}
+    assert named == {"new", "steady", "losses", "map", "rating", "export", "diagnose"}
+
+
 def test_the_blocks_that_install_name_commands_that_exist() -> None:
     installs = [block for block in blocks(README.read_text(encoding="utf-8")) if block.installs]
     assert len(installs) == 2

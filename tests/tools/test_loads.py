@@ -33,6 +33,9 @@ def test_power_flows_as_the_rig_means_it_with_a_load_and_with_the_right_sign(rig
     usual = gh.steady(rig(count))
     assert list(usual.power()) == ["input", "output"] and not usual.backward
     assert usual.title.endswith("kW out at output") and usual["input.P"] == pytest.approx(2000, rel=0.02)
+    assert (
+        usual.called("input_bearing_a").startswith("bearing SKF ") and usual.called("output_seal") == "seal at output"
+    )
     torque = usual["output.tau"]
     assert np.sign(torque) == (-1) ** (count + 1)
     for sign, backward in ((1, False), (-1, True)):

@@ -3,6 +3,7 @@
 from .model.core.component import Component as Component
 from .model.errors import GearheatError as GearheatError
 from .scenarios.own_types import use_parts as use_parts
+from .scenarios.ranges import override as override
 from .tools.build.new import NewRig as NewRig, new as new
 from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
 from .tools.compare.replay import Replays as Replays, replay as replay
@@ -36,6 +37,7 @@ from .tools.solve.steady import SteadyState as SteadyState, steady as steady
 from .tools.solve.sweep import Sweep as Sweep, sweep as sweep
 from .tools.verify.contact.command import ContactVerification as ContactVerification, verify_contact as verify_contact
 from .tools.verify.verify import Verification as Verification, verify as verify
+from .tools.watch.api import watch as watch
 
 map = map_outputs
 PUBLIC: dict[str, tuple[str, str]]

@@ -27,7 +27,11 @@ from .harness import PROGRAM, TABLES
 HEAD = ("what", "size", "processor time [s]", "peak memory [GiB]", "grows as n to the: time", "memory")
 #: A measured log.
 LOG = RIGS / "wind_turbine" / "R80711.csv.gz"
-#: Noise of its repetitions, in units of its columns: a log that repeats itself is refused.
+#: A measured campaign, the sensors that are added to it, and those whose readings they repeat.
+MEASURED = RIGS / "planetary" / "measured.csv"
+ADDED = {"T_oil3_C": "T_oil_C", "T_oil4_C": "T_oil2_C", "T_wall2_C": "T_wall_C"}
+READ = ("T_sun_Nm", "T_oil_C", "T_wall_C", "T_oil2_C")
+#: Noise of repetitions, in units of their columns: what repeats itself is refused.
 NOISE = 0.02
 #: Step of the log.
 STEP = timedelta(minutes=10)
@@ -119,8 +123,25 @@ def wind(folder: Path, n: int) -> None:
             writer.writerow([k // len(rows), (begin + k * STEP).strftime("%Y-%m-%dT%H:%MZ"), *read])
 
 
+def campaign(folder: Path, n: int) -> None:
+    """A campaign of n rows and ten sensors of the planetary rig: measured rows again and again, with noise."""
+    random = np.random.default_rng(0)
+    card = [f'[sensors.{name}]\nreads = "{name[2:].partition("_")[0].rstrip("234")}.T"' for name in ADDED]
+    (folder / "card.toml").write_text("\n".join(card) + "\n", encoding="utf-8")
+    with MEASURED.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    with (folder / "given.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, [*rows[0], *ADDED])
+        writer.writeheader()
+        for k, row in enumerate(islice(cycle(rows), n)):
+            test = int(row["test"]) + k // len(rows) * int(rows[-1]["test"])
+            read = {name: row[ADDED.get(name, name)] for name in (*READ, *ADDED)}
+            noisy = {name: f"{float(cell) + random.uniform(-NOISE, NOISE):.3f}" for name, cell in read.items() if cell}
+            writer.writerow({**row, **noisy, "point": k + 1, "test": test})
+
+
 def nothing(folder: Path, n: int) -> None:
     """What needs no file."""
 
 
-MADE: Mapping[str, Callable[[Path, int], None]] = {f.__name__: f for f in (network, duty, wind, nothing)}
+MADE: Mapping[str, Callable[[Path, int], None]] = {f.__name__: f for f in (network, duty, wind, campaign, nothing)}

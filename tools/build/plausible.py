@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ...model.files import tables
 from . import sizing
 from .bearings import LIFE
@@ -15,6 +17,8 @@ from .sizing import Unit
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
 #: Oil that seals and oil stand for long [degC].
 WARM = (20.0, 100.0)
+#: How much warmer than at the name plate a hall is for which makers rate units [K].
+HALL = 20.0
 #: Fastest motors of such units [rpm].
 FAST = 6000
 #: Efficiency below which standard sizes do not fit the power.
@@ -24,11 +28,15 @@ POOR = 0.4
 def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, float]:
     """Efficiencies [%] of units of such stages, power and ratio."""
     kinds, known = stages.split(",") if isinstance(stages, str) else list(stages), MACHINES["efficiency"]
-    if kinds == ["worm"]:
-        low, high = next(band for most, band in MACHINES["worm"].items() if ratio <= float(most))
+    if kinds[-1] == "worm":
+        slow = sizing.last_ratio(kinds, ratio)
+        ends = [float(most) for most in MACHINES["worm"]]
+        low, high = (float(np.interp(slow, ends, side)) for side in zip(*MACHINES["worm"].values(), strict=True))
+        if len(kinds) > 1:
+            low, high = (end * fast / 100 for end, fast in zip((low, high), known[str(len(kinds) - 1)], strict=True))
     else:
         low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
-    return (low if kW >= 1 else low - known["small"]), high
+    return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
 
 
 def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
@@ -48,6 +56,11 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
         yield (
             f"the oil stands at {1000 * level:.0f} mm, expected {1000 * deepest:.0f} mm, where the largest wheel dips,"
             f" to {1000 * height:.0f} mm, where the axes are. Change --oil-volume."
+        )
+    if (bare := sizes["without_fan"]) and bare["oil_degC"] + HALL < WARM[1]:
+        yield (
+            f"it needs no fan: without one the oil is at {bare['oil_degC']:.1f} degC, the efficiency"
+            f" {100 * bare['efficiency']:.2f} %. Leave out --fan, or give the housing that has one by --housing."
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:

@@ -27,8 +27,9 @@ ROUNDED = 1.05
 CENTRED = ("spur", "helical", "worm")
 #: Of the box around the gears, what is room between them and its walls [m].
 ROOM = (0.040, 0.050, 0.080)
-#: Kinds of stages that stand alone.
-ALONE = ("worm", "planetary")
+#: Kinds of stages that stand alone, or last, as a worm does behind helical stages.
+ALONE = ("planetary",)
+LAST = "worm"
 #: From the middle of a bearing to a gear [m].
 SIDE = 0.020
 #: Between gears [m].
@@ -152,8 +153,9 @@ def unit(
     tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
     length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
     height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
-    if isinstance(found[0], WormStage):  # the wheel stands on the worm
-        length, height = shafts[0].span + 0.090, found[0].a + sum(tips[0]) + 0.080 + 2 * wall
+    if isinstance(found[-1], WormStage):  # the wheel stands on the worm, gears before it at the worm's end
+        length = shafts[-2].span + 0.090 + sum(s.b + GAP for s in found[:-1])
+        height = max(s.a + sum(pair) for s, pair in zip(found, tips, strict=True)) + 0.080 + 2 * wall
     elif isinstance(found[0], PlanetaryStage):
         length = height = 2 * found[0].reach + 8 * found[0].m_n + 0.040 + 2 * wall
     else:
@@ -196,6 +198,10 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
     if "bevel" in kinds[1:]:
         first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
         problems.append(f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}.")
+    if LAST in kinds[:-1]:
+        problems.append(f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}.")
+    if LAST in kinds and "bevel" in kinds:
+        problems.append(f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical.")
     problems += [
         f"a {kind} stage stands alone here. Give --stages {kind}, for ratios of {LEAST[kind]:g} to {MOST[kind]:g}, or"
         f" helical stages, of up to {MOST['helical']:g} each."
@@ -211,10 +217,9 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
     )
     if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
-        needed = max(1, math.ceil(math.log(max(ratio, 1.01)) / math.log(most)))
         problems.append(
             f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
-            f" to {most:.3g}. Give {needed} stages or more."
+            f" to {most:.3g}. {_other_stages(kinds, ratio)}"
         )
     if bearings not in CHOICES:
         raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
@@ -235,9 +240,39 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         raise ScenarioError(problems)
 
 
+def _other_stages(kinds: Sequence[str], ratio: float) -> str:
+    """Stages that have a ratio where others have not, with a worm or a bevel stage as wanted."""
+    if ratio < 1:
+        return "Give a ratio of 1 or more: the input is the faster shaft, and the output may drive."
+    kept = next((kind for kind in (kinds[-1], kinds[0]) if kind in (LAST, "bevel")), None)
+    if kept is None or ratio < LEAST.get(kept, 1.0):
+        kept, left = None, ratio
+    else:
+        left = ratio / MOST[kept]
+    gears = ["helical"] * max(math.ceil(math.log(max(left, 1.0)) / math.log(MOST["helical"]) - 1e-9), kept is None)
+    named = {LAST: [*gears, LAST], "bevel": ["bevel", *gears]}.get(kept or "", gears)
+    return f"Give --stages {','.join(named)}."
+
+
+def last_ratio(kinds: Sequence[str], ratio: float) -> float:
+    """Ratio that is left for the last stage.
+
+    Args:
+        kinds: of all stages
+        ratio: of all together
+    """
+    for k in range(len(kinds) - 1):
+        ratio /= _share(ratio, kinds[k:])
+    return ratio
+
+
 def _share(ratio: float, kinds: Sequence[str]) -> float:
     """Ratio of the next stage: the first ones have more, so that all wheels are of like size."""
     stages = len(kinds)
+    if kinds[-1] == LAST and stages > 1:  # gears before a worm have less, as worms need 7 at least
+        least, most = LEAST[LAST], MOST[LAST]
+        share = min(max(ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
+        return float(min(max(share, 1.0), MOST[kinds[0]]))
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
     return float(min(max(share, ratio / math.prod(MOST[kind] for kind in kinds[1:]), 1.0), ratio, MOST[kinds[0]]))
 
@@ -253,9 +288,9 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
         beyond = SIDE + stages[0].b / 2
         span = OVERHANG * beyond
         gears = [(stages[0].forces[0], span + beyond, stages[0].r_1)]
-    elif k == 0 and isinstance(stages[0], WormStage):
-        span = APART * 2 * stages[0].r_2
-        gears = [(stages[0].forces[0], span / 2, stages[0].r_1)]
+    elif behind and isinstance(behind[0], WormStage):
+        span = max(APART * 2 * behind[0].r_2, span if before else 0.0)
+        gears[-1] = behind[0].forces[0], span / 2, behind[0].r_1
     elif isinstance(stages[0], PlanetaryStage):  # the forces on sun and carrier are in balance
         gears = []
     axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
@@ -270,7 +305,7 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
 
 def wheels_dip(made: Unit) -> bool:
     """Whether wheels dip as the law of churning has it: planets and worms do otherwise."""
-    return not isinstance(made.stages[0], PlanetaryStage | WormStage)
+    return not any(isinstance(stage, PlanetaryStage | WormStage) for stage in made.stages)
 
 
 def height_of_axes(made: Unit) -> float:

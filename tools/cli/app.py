@@ -52,6 +52,7 @@ PANELS = {
         diagnosis.card,
         diagnosis.campaign,
         measured.replay,
+        measured.watch,
     ),
     "Films, and proof": (developers.film, developers.verify, developers.verify_contact),
     "For developers": (developers.bench, developers.docs),

@@ -11,6 +11,7 @@ import gearheat as gh
 from ...model.errors import ScenarioError
 from ..show import console
 from ..show.notes import print_outside, print_unchecked
+from ..watch import lines
 
 #: Rows of the table of contacts for people; programs get all.
 CONTACTS = 19
@@ -111,6 +112,37 @@ def replay(
     console.answer(found.as_dict(), json, lambda: print_replays(found))
 
 
+def watch(
+    rig: str,
+    source: str,
+    card: Path | None = None,
+    reference_logs: list[Path] | None = None,
+    sibling_logs: list[Path] | None = None,
+    state: Path | None = None,
+    every: int = 250,
+    once: bool = False,
+    alpha: float = 0.05,
+    json: str | None = None,
+) -> None:
+    """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
+    console.use_one_thread()
+    with lines.opened(json) as out:
+        events = gh.watch(
+            rig,
+            source,
+            card=card,
+            reference_logs=reference_logs or (),
+            sibling_logs=sibling_logs or (),
+            state=state,
+            every=every,
+            once=once,
+            alpha=alpha,
+            after=out.last,
+        )
+        for event in events:
+            out.write(event)
+
+
 def _refuse(options: Mapping[str, object], method: str | None) -> None:
     """Refuse options that belong to the other kind of losses."""
     wrong = [name for name, value in options.items() if value]
@@ -149,7 +181,6 @@ def _print_losses(table: gh.LossTable) -> None:
         for key, value in contacts.totals.items():
             console.say(f"{key}: {value:.6g}")
     print_outside(table.found.get("outside", ()))
-    print_unchecked(table.found["unchecked"])
 
 
 def _print_method(rated: gh.MethodRating) -> None:

@@ -34,18 +34,23 @@ def describe(name: str, command: C) -> C:
 
 
 def _with_parts(command: C) -> C:
-    """A command that takes the modules whose part types its rig may name."""
+    """A command that takes modules whose part types its rig may name, and values beyond what gear units have."""
 
     @functools.wraps(command)
-    def run(*args: Any, parts: list[str] | None = None, **kwargs: Any) -> None:
+    def run(*args: Any, parts: list[str] | None = None, override: bool = False, **kwargs: Any) -> None:
         gh.use_parts(*(parts or ()))
-        command(*args, **kwargs)
+        with gh.override(override):
+            command(*args, **kwargs)
 
     own = inspect.signature(command)
-    kind = Annotated[list[str] | None, _option(TEXTS["every"]["parts"])]
-    more = inspect.Parameter("parts", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
-    vars(run)["__signature__"] = own.replace(parameters=[*own.parameters.values(), more])
-    run.__annotations__ = {**command.__annotations__, "parts": kind}
+    kinds = {"parts": list[str] | None, "override": bool}
+    told = {key: Annotated[kind, _option(TEXTS["every"][key])] for key, kind in kinds.items()}
+    more = [
+        inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=told[key])
+        for key, default in (("parts", None), ("override", False))
+    ]
+    vars(run)["__signature__"] = own.replace(parameters=[*own.parameters.values(), *more])
+    run.__annotations__ = {**command.__annotations__, **told}
     return cast(C, run)
 
 

@@ -26,6 +26,7 @@ def new(
     cooler: bool = False,
     base: str = "concrete",
     motor_heat: str | None = None,
+    air_speed: str | None = None,
     centre_distance: str | None = None,
     housing: str | None = None,
     oil_volume: str | None = None,
@@ -37,7 +38,7 @@ def new(
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
     sizes: dict[str, Any] = {"centre_distance": centre_distance, "housing": housing, "oil_volume": oil_volume}
-    rig = gh.new(name, **plate, **chosen, **sizes, motor_heat=motor_heat, out=path)
+    rig = gh.new(name, **plate, **chosen, **sizes, motor_heat=motor_heat, air_speed=air_speed, out=path)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
     for note in rig.notes:
         console.note(note)

@@ -11,7 +11,7 @@ import gearheat as gh
 from ...model.errors import ScenarioError
 from ..show import console
 from ..show.display import Display
-from ..show.notes import print_outside, print_unchecked
+from ..show.notes import print_outside
 
 #: What is said where a machine runs against what its rig is meant for.
 BACKWARD = (
@@ -197,7 +197,6 @@ def print_end(out: Path, found: Mapping[str, Any]) -> None:
     if found.get("backward"):
         console.note(f"{found['backward']} of {found['rows']} rows: {BACKWARD}")
     print_outside(found.get("outside", ()))
-    print_unchecked(found.get("unchecked", ()))
 
 
 def _print_point(
@@ -212,7 +211,6 @@ def _print_point(
     for line in found.get("far", ()):
         console.note(f"{line}. Check its digits and its unit.")
     print_outside(found["outside"])
-    print_unchecked(found["unchecked"])
 
 
 def _print_design(answer: gh.DesignAnswer, everything: bool) -> None:
@@ -245,7 +243,6 @@ def _print_alternatives(answer: gh.DesignAnswer) -> None:
     for alternative in found["alternatives"]:
         for problem in alternative.get("problems", ()):
             console.say(f"{part} = {alternative[part]}: {problem}")
-    print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())
 
 
 def _print_sweep(rows: gh.Sweep, found: Mapping[str, Any]) -> None:
@@ -256,7 +253,6 @@ def _print_sweep(rows: gh.Sweep, found: Mapping[str, Any]) -> None:
         count = found["rows_outside"]
         console.say(f"rows with a law outside the range of its source: {count}, most of all row {outside['row']}:")
         print_outside(outside["laws"])
-    print_unchecked(found["unchecked"])
     print(found["out"] + ("" if rows.seconds is None else f" after {rows.seconds:.1f} s"))
 
 
@@ -274,7 +270,6 @@ def _print_teeth(felt: gh.TeethFelt) -> None:
     console.say("flash, integral, micropitting: ISO/TS 6336-20, -21, -22 by their own friction and tooth temperature")
     for assumption in felt.found["assumptions"]:
         console.say(f"assumed: {assumption}")
-    print_unchecked(felt.found["unchecked"])
 
 
 def _print_rating(powers: gh.Rating) -> None:

@@ -160,17 +160,19 @@ class Rivals:
         data = windows([fitted], given, read, 0)
         self.scale = np.maximum(np.abs(data.given[data.there]).max(axis=0), 1e-9)
         self.node = [self._node(data, j) for j in range(len(read))]
-        self.regression = [self._regress(data, j) for j in range(len(read))]
+        self.regression = self._regress(data)
 
-    def _regress(self, data: Windows, j: int) -> np.ndarray:
-        """Coefficients of a regression of sensor j on inputs now and before, by normal equations, window by window."""
-        A: Any = 0.0
-        b: Any = 0.0
-        for u, y, n in zip(data.given, data.read[:, :, j], _lengths(data), strict=True):
-            X, known = _lagged(u[:n] / self.scale), np.isfinite(y[:n])
-            A, b = A + X[known].T @ X[known], b + X[known].T @ y[:n][known]
-        ridge = 1e-6 * np.trace(A) / len(A) * np.eye(len(A))
-        return np.asarray(np.linalg.solve(A + ridge, b))
+    def _regress(self, data: Windows) -> np.ndarray:
+        """Coefficients of regressions of all sensors on inputs now and before (terms, reads), window by window."""
+        reads: Any = range(data.read.shape[2])
+        A, b = [0.0 for _ in reads], [0.0 for _ in reads]
+        for u, y, n in zip(data.given, data.read, _lengths(data), strict=True):
+            X = _lagged(u[:n] / self.scale)
+            for j in reads:
+                known = np.isfinite(y[:n, j])
+                A[j], b[j] = A[j] + X[known].T @ X[known], b[j] + X[known].T @ y[:n, j][known]
+        ridges = [1e-6 * np.trace(own) / len(own) * np.eye(len(own)) for own in A]
+        return np.column_stack([np.linalg.solve(A[j] + ridges[j], b[j]) for j in reads])
 
     def _node(self, data: Windows, j: int) -> np.ndarray:
         """Decay [logit] and gains of a first-order model of sensor j, by least squares of its free run."""
@@ -189,13 +191,13 @@ class Rivals:
     def one_node(self, x: np.ndarray, u: np.ndarray, start: float) -> np.ndarray:
         """Free run (n,) from a start."""
         decay = 1 / (1 + np.exp(-x[0]))
-        drive = u / self.scale @ x[1:-1] + x[-1]
+        drive = u @ (x[1:-1] / self.scale) + x[-1]
         found, _ = lfilter([1.0], [1.0, -decay], drive, zi=[decay * start])
         return np.asarray(found)
 
-    def regressed(self, j: int, u: np.ndarray) -> np.ndarray:
-        """Prediction (n,) of sensor j."""
-        return np.asarray(_lagged(u / self.scale) @ self.regression[j])
+    def regressed(self, u: np.ndarray) -> np.ndarray:
+        """Predictions of all sensors (n, reads)."""
+        return np.asarray(_lagged(u / self.scale) @ self.regression)
 
 
 def _lengths(data: Windows) -> np.ndarray:
@@ -214,20 +216,19 @@ def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
     whole = windows([log], own.given, own.read, 0)
     lengths = _lengths(whole)
     passed = own.run(whole, np.zeros((len(lengths), len(own.knobs))), free=True, slopes=False)
-    node, regression = np.full_like(whole.read, np.nan), np.full_like(whole.read, np.nan)
+    shown, predicted = passed.shown, np.empty_like(whole.read)
+    free = {"rig": _rms(own.read, whole.read - shown)}
     for i, n in enumerate(lengths):
         for j in range(len(own.read)):
-            node[i, :n, j] = rivals.one_node(rivals.node[j], whole.given[i, :n], whole.read[i, 0, j])
-            regression[i, :n, j] = rivals.regressed(j, whole.given[i, :n])
-    free = {
-        "rig": _rms(own.read, whole.read - passed.shown),
-        "one node": _rms(own.read, whole.read - node),
-        "regression with lags": _rms(own.read, whole.read - regression),
-    }
+            predicted[i, :n, j] = rivals.one_node(rivals.node[j], whole.given[i, :n], whole.read[i, 0, j])
+    free["one node"] = _rms(own.read, whole.read - predicted)
+    for i, n in enumerate(lengths):
+        predicted[i, :n] = rivals.regressed(whole.given[i, :n])
+    free["regression with lags"] = _rms(own.read, whole.read - predicted)
     longest = int(lengths.argmax())
     n = lengths[longest]
-    shown = {s: np.array([passed.shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
-    return Replayed(log.name, log.n, free, _ahead(own, log, rivals), shown, log.time[whole.rows[longest, :n]])
+    pictured = {s: np.array([shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
+    return Replayed(log.name, log.n, free, _ahead(own, log, rivals), pictured, log.time[whole.rows[longest, :n]])
 
 
 def _rms(names: Sequence[str], error: np.ndarray) -> dict[str, float]:
@@ -244,19 +245,20 @@ def _ahead(own: Filter, log: Log, rivals: Rivals) -> dict[str, dict[str, tuple[f
     found: dict[str, dict[str, tuple[float, ...]]] = {
         m: {} for m in ("rig", "one node", "regression with lags", "last reading")
     }
+    at = begin[:, None] + np.array(steps) - 1
+    regressed = np.array([rivals.regressed(u)[k] for u, k in zip(data.given, at, strict=True)])
     for j, name in enumerate(own.read):
         errors: dict[str, list[np.ndarray]] = {method: [] for method in found}
         for i, b in enumerate(begin):
-            at = b + np.array(steps) - 1
             y, last, u = data.read[i, :, j], data.read[i, b - 1, j], data.given[i]
             predicted = {
-                "rig": passed.shown[i, at, j],
-                "one node": rivals.one_node(rivals.node[j], u[b:], last)[at - b],
-                "regression with lags": rivals.regressed(j, u)[at],
-                "last reading": np.full(len(at), last),
+                "rig": passed.shown[i, at[i], j],
+                "one node": rivals.one_node(rivals.node[j], u[b:], last)[at[i] - b],
+                "regression with lags": regressed[i, :, j],
+                "last reading": np.full(len(steps), last),
             }
             for method, value in predicted.items():
-                errors[method].append(y[at] - value)
+                errors[method].append(y[at[i]] - value)
         for method, e in errors.items():
             found[method][name] = tuple(float(v) for v in np.sqrt(np.nanmean(np.array(e) ** 2, axis=0)))
     return found

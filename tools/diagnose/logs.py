@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -93,7 +93,7 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
     if problems:
         raise DataError(problems)
-    _check(data)
+    check(data)
     known = fleet(
         inputs.scenario,
         data.reference,
@@ -105,14 +105,14 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     return composed(inputs, known, asked, data, progress)
 
 
-def composed(
+def judged(
     inputs: Inputs,
     known: Fleet,
     asked: Question,
     logs: Logs,
     progress: Progress = lambda stage, share: None,
 ) -> LogDiagnosis:
-    """The answer, from what healthy logs and those in question say.
+    """The answer without pictures, gain and words, from what healthy logs and those in question say.
 
     Args:
         inputs: rig, card and options
@@ -127,22 +127,29 @@ def composed(
     formulas = tuple(Formula(cause, form, names, read) for cause in causes for form in cause.forms)
     scenario = inputs.scenario
     made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, data.plant, problem, {})
-    found = temper(
-        weigh(
-            problem,
-            formulas,
-            Options(request.alpha, request.seed, request.causes),
-            lambda t, p: progress(t, 0.62 + 0.2 * p),
-        )
-    )
+    options = Options(request.alpha, request.seed, request.causes)
+    found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)
-    told = _findings(made, found, decision, inputs, logs)
-    if decision.verdict != "consistent" and not request.quick:
-        held = _gain(known, asked, found, problem.spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
-        told = told.model_copy(update={"gain": held})
-    rows, drawn = _pictures(known, asked, decision, problem.spans, logs.logs[0].read)
-    told = told.model_copy(update={"rows": rows, "pictures": drawn})
-    return LogDiagnosis(found, decision, with_words(told))
+    return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs))
+
+
+def composed(
+    inputs: Inputs,
+    known: Fleet,
+    asked: Question,
+    logs: Logs,
+    progress: Progress = lambda stage, share: None,
+) -> LogDiagnosis:
+    """The whole answer; as `judged`."""
+    told = judged(inputs, known, asked, logs, progress)
+    found, decision, findings = told.found, told.decision, told.findings
+    spans = problem_of(known, asked, logs.logs).spans
+    if decision.verdict != "consistent" and not inputs.request.quick:
+        held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
+        findings = findings.model_copy(update={"gain": held})
+    rows, drawn = _pictures(known, asked, decision, spans, logs.logs[0].read)
+    findings = findings.model_copy(update={"rows": rows, "pictures": drawn})
+    return replace(told, findings=with_words(findings))
 
 
 def _findings(
@@ -180,7 +187,7 @@ def _findings(
     )
 
 
-def _check(data: Logs) -> None:
+def check(data: Logs) -> None:
     """Logs go together: the same step, sensors and kind of time."""
     first, problems = data.logs[0], []
     for log in (*data.logs[1:], *data.healthy):

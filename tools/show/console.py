@@ -317,7 +317,12 @@ def table(
     least = [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)]
     kept, *others = fitting(least, whole, screen.width, repeated=words[0])
     screen.print(visible(title), style="italic")
+    drawn_plain = not (screen.is_terminal or screen.options.ascii_only)
+    plain = drawn_plain and all(text.isascii() and text.isprintable() for row in (columns, *body) for text in row)
     for group in (kept, *others):
+        if plain and sum(widest[i] + 3 for i in group) < screen.width:
+            print(_plain([columns, *body], [(i, widest[i], words[i]) for i in group]))
+            continue
         drawn = Table(box=box.SIMPLE_HEAD)
         for i in group:
             drawn.add_column(
@@ -332,6 +337,21 @@ def table(
         screen.print(drawn)
     if left := [name for i, name in enumerate(columns) if not any(i in group for group in (kept, *others))]:
         say(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
+
+
+def _plain(rows: Sequence[Sequence[str]], columns: Sequence[tuple[int, int, bool]]) -> str:
+    """A table that has room, as rich draws it without styles, in a tenth of its time.
+
+    Args:
+        rows: head and body
+        columns: number, width, and whether words, of each
+    """
+    lines = [
+        "  " + "   ".join(row[i].ljust(n) if words else row[i].rjust(n) for i, n, words in columns) + "  "
+        for row in rows
+    ]
+    blank = " " * len(lines[0])
+    return "\n".join([blank, lines[0], f" {'─' * (len(blank) - 2)} ", *lines[1:], blank])
 
 
 def fitting(widths: Sequence[int], whole: Sequence[bool], room: int, *, repeated: bool) -> list[list[int]]:

@@ -102,6 +102,27 @@ class SteadyState(Quantities):
             )
         return lines
 
+    def called(self, part: str) -> str:
+        """What a person calls a bearing or a seal, "bearing SKF 6310 at input"; "" where nothing names it."""
+        role, spec = self.scenario.types[part].role, self.scenario.spec
+        if role not in PLURAL:
+            return ""
+        nets = [net for net in spec.connections if f"{part}.shaft" in net]
+        ends = [f"at {end}" for end in spec.of_type("ShaftEnd") if any(f"{end}.flange" in net for net in nets)]
+        entry, values = self.scenario.entries.get(part, {}).get(role, ""), spec.part(part).values
+        own = self.scenario.entry_values(part, entry) if entry else {}
+        same = all(values.get(path.rpartition(".")[2]) == value for path, value in own.items())
+        words = [entry] * bool(entry and same) + ends[:1]
+        return " ".join([role, *words]) if words else ""
+
+    def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
+        """Rows of a table under `HEAD`; losses of bearings and seals by what a person calls these."""
+        split = [(row, *row[0].rpartition(".")[::2]) for row in super().rows(names)]
+        known = self.scenario.types
+        return [
+            (*row[:3], (key == "P_loss" and part in known and self.called(part)) or row[3]) for row, part, key in split
+        ]
+
     @property
     def first(self) -> list[str]:
         """What a first answer holds."""

@@ -11,9 +11,11 @@ from gearheat.scenarios.measured.logs import Log
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.diagnose.answer.findings import Findings
 from gearheat.tools.diagnose.answer.numbers import as_object
+from gearheat.tools.diagnose.infer.expect import expect
 from gearheat.tools.diagnose.infer.logs import Fleet, filter_of, fleet, question
 from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed
 from gearheat.tools.diagnose.request import Inputs, Request
+from gearheat.tools.watch.judge import BAND, Judge
 from made_logs import MACHINES, YEARS, differing, made
 
 #: Samples of one stretch: a week; seasons of the healthy logs and of that in question.
@@ -63,7 +65,7 @@ class Farm:
         if name:
             change[int(since * ASKED) :, :, [k.name for k in self.knobs].index(name)] = size
         parts = [self.log(0, 3.0 + q / 4, seed + q, change[q]) for q in range(ASKED)]
-        logs = [self.joined(parts, "asked")]
+        logs = self.logs = [self.joined(parts, "asked")]
         inputs = Inputs(Request("wind_turbine", quick=True), self.scenario, Card(), None, None, None)
         return composed(inputs, self.fleet, question(self.fleet, logs), Logs(logs))
 
@@ -130,3 +132,25 @@ def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(far
     assert np.std(after[now]) < 0.4 * np.std(before[now])  # a year's constant is no fault and stays
     shown = told.rows.channels[picture.channel]
     assert np.array(shown.measured) - np.array(shown.nominal) == pytest.approx(before, abs=1e-3)
+
+
+def test_a_watch_says_of_a_log_what_the_diagnosis_says(farm: Farm, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = farm.asked(*WORN)
+    (log,) = farm.logs
+    judge = Judge(Inputs(Request("wind_turbine"), farm.scenario, Card(), None, None, None))
+    monkeypatch.setattr(judge, "log", lambda *said: log)
+    monkeypatch.setattr(judge, "known", lambda log: farm.fleet)
+    said = judge.answer("asked", "", [], [])
+    assert said["changed"] == round(1 - told.findings.nothing, 4)
+    assert said["causes"][0]["id"] == told.findings.causes[0].id == "cooling.cooler"
+    sump = said["readings"]["T_sump"]
+    assert sump["measured"] == pytest.approx(log.values["T_sump"][-N // 4 :].mean() - 273.15, abs=1e-3)
+    assert sump["low"] < sump["predicted"] < sump["high"]
+
+
+def test_healthy_windows_lie_in_their_bands(farm: Farm) -> None:
+    inside = []
+    for k in range(0, len(farm.fleet.past.time), 2):
+        last = expect(farm.fleet, farm.fleet.past.some(np.array([k])))
+        inside.append(np.abs(last.measured - last.predicted) < BAND * last.sd)
+    assert 0.85 < np.mean(inside) <= 1.0

@@ -16,7 +16,7 @@ OFFERED void prepare(void)
     for (i = 0; i < NP; i++) p[i] = model_start[FIRST_P + i];
     for (i = 0; i < NZ; i++) z[i] = model_z_start[i];
     model_constants(p, c);
-    implicit_solve(x, z, u, p, c);
+    implicit_solve(x, z, u, p, c, -1);
 }
 
 static void move(int k) { x[0] += k % 2 ? 1e-3 : -1e-3; }
@@ -25,7 +25,7 @@ static void move(int k) { x[0] += k % 2 ? 1e-3 : -1e-3; }
 OFFERED void rates(int n)
 {
     int k;
-    for (k = 0; k < n; k++) move(k), implicit_solve(x, z, u, p, c), model_rates(x, z, u, p, c, dx);
+    for (k = 0; k < n; k++) move(k), implicit_solve(x, z, u, p, c, -1), model_rates(x, z, u, p, c, dx);
 }
 
 OFFERED void steps(int n)
@@ -38,5 +38,5 @@ OFFERED void steps(int n)
 OFFERED void outputs(int n)
 {
     int k;
-    for (k = 0; k < n; k++) move(k), implicit_solve(x, z, u, p, c), model_outputs(x, z, u, p, c, y, dx);
+    for (k = 0; k < n; k++) move(k), implicit_solve(x, z, u, p, c, -1), model_outputs(x, z, u, p, c, y, dx);
 }

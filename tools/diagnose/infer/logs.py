@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -50,8 +50,8 @@ class Fleet:
     Args:
         filter: the rig, compiled
         knobs: what may differ
-        past: windows of the machine's own healthy logs
-        levels: what the healthy logs say
+        past: windows of the healthy logs of the machine in question
+        levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
     """
 
@@ -60,6 +60,12 @@ class Fleet:
     past: Windows
     levels: Levels
     share: float
+
+    def of(self, machine: int) -> Fleet:
+        """The same with one of its machines in question, without its past."""
+        mean, covariance = (a[[machine]] for a in (self.levels.mean, self.levels.covariance))
+        levels = replace(self.levels, mean=mean, covariance=covariance)
+        return replace(self, past=self.past.some(np.zeros(0, dtype=int)), levels=levels)
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:

@@ -1,0 +1,151 @@
+"""Samples that grow, come late, twice or wrong count once; a watch that is killed goes on as if it was not."""
+
+import io
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.scenarios.measured.table import Sensor
+from gearheat.tools.watch.lines import as_text, opened
+from gearheat.tools.watch.sources import Files, Source, Stream
+from gearheat.tools.watch.store import Store
+from gearheat.tools.watch.watch import Watch
+
+HEAD = "time_utc,n_hss_rpm,T_hss_Nm,T_nacelle_C,T_sump_C"
+EVERY = 5
+
+
+@pytest.fixture(scope="module")
+def sensors() -> tuple[Sensor, ...]:
+    named = {"n_hss_rpm": "speed", "T_hss_Nm": "torque", "T_nacelle_C": "ambient", "T_sump_C": "oil_temp"}
+    return tuple(Sensor(name, name, name, kind, "given", "", 1.0, 1.0) for name, kind in named.items())
+
+
+def line(k: int, sump: object = None) -> str:
+    return f"2016-03-{1 + k // 144:02}T{k // 6 % 24:02}:{k % 6}0Z,1500,8000,20,{50 + k / 10 if sump is None else sump}"
+
+
+def answer(machine, kind, times, rows) -> dict:
+    """Of all samples that there are: their number and their sum; an alarm from the third window on."""
+    total = sum(row.get("T_sump_C", 0.0) for row in rows)
+    verdict = "explained" if len(rows) > 2 * EVERY else "consistent"
+    return {"samples": len(rows), "total": round(total, 6), "verdict": verdict, "causes": []}
+
+
+def events(sensors: tuple[Sensor, ...], source: Source, store: Store) -> Iterator[None]:
+    return Watch(sensors, "segment", store, answer, EVERY, lambda: 1.5e9).follow(source)
+
+
+def said(store: Store) -> list[dict]:
+    return [json.loads(text) for _, text in store.events(0)]
+
+
+def streamed(sensors: tuple[Sensor, ...], *lines: str) -> list[dict]:
+    store = Store(None, "")
+    for _ in events(sensors, Stream(io.BytesIO("\n".join((HEAD, *lines)).encode()), "one"), store):
+        pass
+    return said(store)
+
+
+def test_a_window_is_answered_with_all_that_has_come(sensors: tuple[Sensor, ...]) -> None:
+    found = streamed(sensors, *map(line, range(16)))
+    assert [(e["event"], e.get("samples")) for e in found] == [
+        ("window", 5),
+        ("window", 10),
+        ("alarm", None),
+        ("window", 15),
+    ]
+    assert found[0]["from"] == "2016-03-01T00:00:00Z" and found[0]["to"] == found[2]["from"].replace("1:40", "0:40")
+    assert found[3]["alarm"] == "2016-03-01T02:20:00Z"
+    assert as_text(found[2]) == "2016-03-01T02:20:00Z one: ALARM: no cause stands out"
+
+
+def test_times_without_a_calendar_are_seconds(tmp_path: Path) -> None:
+    lines = [f"{k / 6:.6f},1500,8000,20,50" for k in range(17)]
+    text = "\n".join((HEAD.replace("time_utc", "time_h"), *lines)).encode()
+    sensors = (Sensor("T_sump", "T_sump", "sump.T", "oil_temp", "read", "degC", 0.3, 0.3),)
+    store = Store(tmp_path / "state", "")
+    for _ in events(sensors, Stream(io.BytesIO(text), "one"), store):
+        pass
+    assert [e["to"] for e in said(store)] == pytest.approx([4 * 600.0, 9 * 600.0, 14 * 600.0, 14 * 600.0], abs=0.01)
+    assert Store(tmp_path / "state", "").machines["one"].alarm == said(store)[-1]["alarm"]
+
+
+def test_what_is_late_or_there_twice_counts_once(sensors: tuple[Sensor, ...]) -> None:
+    plain = list(map(line, range(16)))
+    mixed = [*plain[:6], plain[4], *plain[7:9], plain[6], plain[8], *plain[9:], plain[0]]
+    late, straight = streamed(sensors, *mixed), streamed(sensors, *plain)
+    assert late == straight
+
+
+@pytest.mark.parametrize(
+    ("wrong", "text"),
+    [
+        (line(4, "warm"), 'T_sump_C is "warm", expected a number'),
+        (line(3, 99), "T_sump_C at a time that is there with another value"),
+        ("noon,1,2,3,4", 'its time is "noon"'),
+        ("2099" + line(4)[4:], "has not come yet"),
+        ("12," + line(4).partition(",")[2], "has numbers, earlier samples times with a zone"),
+        (line(4) + ",7", "has 6 cells, the header has 5"),
+    ],
+)
+def test_what_is_wrong_is_said_once_and_the_rest_goes_on(sensors: tuple[Sensor, ...], wrong: str, text: str) -> None:
+    found = streamed(sensors, *map(line, range(4)), wrong, *map(line, range(4, 8)))
+    (warning,) = (e for e in found if e["event"] == "warning")
+    assert text in warning["text"] and "line 6" in warning["text"]
+    assert [e["samples"] for e in found if e["event"] == "window"] == [5]
+
+
+@pytest.mark.parametrize("ends", [range(1, 60, 7), [2, 3, 4], [33]])
+def test_a_watch_that_is_killed_goes_on_as_if_it_was_not(sensors: tuple[Sensor, ...], tmp_path: Path, ends) -> None:
+    log, rows = tmp_path / "one.csv", [line(k) for k in range(44)]
+    log.write_text("\n".join([HEAD, *rows[:20], rows[3], line(18, 7), *rows[20:], ""]))
+    for stop in (*ends, None):
+        store = Store(tmp_path / "state", "")
+        for n, _ in enumerate(events(sensors, Files(log, store.place, once=True), store)):
+            if n == stop:
+                break
+        store.base.close()  # what is not committed is lost, as if the process was killed
+    whole = Store(None, "")
+    for _ in events(sensors, Files(log, whole.place, once=True), whole):
+        pass
+    assert said(Store(tmp_path / "state", "")) == said(whole)
+    assert len(said(whole)) == 10
+
+
+def test_a_file_that_grows_and_is_made_anew(sensors: tuple[Sensor, ...], tmp_path: Path) -> None:
+    log, store = tmp_path / "farm" / "one.csv", Store(None, "")
+    log.parent.mkdir()
+    log.write_text("\n".join([HEAD, *map(line, range(6))]))  # the last line is under way
+    looks = events(sensors, Files(log.parent, store.place), store)
+    next(looks)
+    assert not said(store)
+    log.write_text("\n".join([HEAD, *map(line, range(7)), ""]))
+    while not said(store):
+        next(looks)
+    log.write_text("\n".join([HEAD, *map(line, range(7, 11)), ""]))
+    while len(said(store)) < 2:
+        next(looks)
+    assert [e["samples"] for e in said(store)] == [5, 10]
+    assert list(store.machines) == ["one"]
+
+
+def test_a_state_is_that_of_one_watch(tmp_path: Path) -> None:
+    Store(tmp_path / "state", "a rig").base.close()
+    with pytest.raises(DataError, match="another rig"):
+        Store(tmp_path / "state", "another")
+    (tmp_path / "text").write_text("no database, but some text" * 50)
+    with pytest.raises(DataError, match="no state of a watch"):
+        Store(tmp_path / "text", "a rig")
+
+
+def test_a_file_of_events_has_each_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "events.jsonl"
+    path.write_text('{"number": 3, "event": "cleared"}\n{"number": 4, "eve')
+    with opened(str(path)) as lines:
+        assert lines.last == 3
+        lines.write({"number": 4, "event": "cleared", "machine": "one", "to": "today"})
+    assert [json.loads(text)["number"] for text in path.read_text().splitlines()] == [3, 4]
+    assert capsys.readouterr().out == "today one: alarm over\n"

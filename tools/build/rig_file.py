@@ -1,0 +1,287 @@
+"""The rig file of a gear unit: its sizes, what stands around it, and the rule of every number."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from ...model.errors import ScenarioError, suggestion
+from ...model.units import to_si
+from . import sizing
+from .bearings import LIGHT
+from .sizing import APART, GAP, OVERHANG, SIDE, Unit
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
+
+#: Density of steel [kg/m3].
+STEEL = 7850.0
+#: Density of cast iron [kg/m3].
+IRON = 7200.0
+#: Density of oil at which churning is stated [kg/m3].
+OIL = 835.0
+#: Diameter of a fan over the smaller side of the housing [1].
+SWEEP = 0.8
+#: Air along the walls over the speed of the fan's tips [1]. Thermal power of a 22 kW unit, three stages, is 1.10, 1.15,
+#: 1.20 and 1.28 of that without it at 710, 900, 1120, 1400 rpm (air 1.25 m/s, 40 degC, oil 95 degC); a maker has 1.12,
+#: 1.18, 1.25 and 1.32 for one fan on parallel shafts (Rossi, UT.D 123 rev. 3, table 7).
+AIR = 0.12
+#: Power of a fan over rho n3 D5 [1].
+FAN = 3.0
+#: How much warmer the oil is than the water or air of its cooler [K].
+COOLED = 50.0
+#: Iron of ribs and flanges over that of the walls [1].
+RIBBED = 0.25
+#: Height of a rib over its thickness [1].
+RIBS = 2.5
+#: Speed of the air along a housing in a room with little draught [m/s].
+DRAUGHT = 0.3
+#: That for which a maker rates units with a motor that cools itself (Rossi, UTD.123.2019-10, 7.16) [m/s].
+BLOWN = 1.25
+#: What a unit stands on.
+BASES = ("concrete", "steel", "flange", "free")
+#: Bolts of a foot or flange.
+BOLTS = 4
+#: Diameter of a bolt over the wall's thickness [1].
+BOLT = 1.5
+#: Width of the two strips that a foot stands on over that of the housing [1].
+STRIPS = 2 * 0.15
+#: Inner over outer diameter of the ring on which a flange stands [1].
+SPIGOT = 0.77
+#: Thickness of a steel frame over that of the wall [1].
+FRAME = 2.0
+#: How far it reaches beyond foot or flange, at either end, over their length [1].
+BEYOND = 0.5
+#: How a foot or flange is held.
+_BOLTED = f"{BOLTS} bolts {BOLT:g} times as thick as the walls, 0.2 mm of air beside them"
+#: Speed at which churning is stated, 200 rpm [rad/s].
+CHURNED = 200 * math.pi / 30
+
+
+@dataclass(frozen=True)
+class Around:
+    """What stands around a unit, and what cools it.
+
+    Args:
+        base: one of `BASES`
+        fan: whether one is on the input shaft
+        cooler: whether the oil has one
+        motor: heat that comes by the flange of a motor [W], None without one
+        air: speed of the air along the housing [m/s]
+        boxed: whether the housing is that of a data sheet
+    """
+
+    base: str
+    fan: bool
+    cooler: bool
+    motor: float | None
+    air: float
+    boxed: bool
+
+
+def around_of(base: str, fan: bool, cooler: bool, heat: str | None, air: str | None, boxed: bool) -> Around:
+    """What stands around a unit, from what is written."""
+    if base not in BASES:
+        raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
+    motor = None if heat is None else to_si(heat, "W", name="--motor-heat")
+    if motor is not None and motor < 0:
+        raise ScenarioError(f"--motor-heat = {heat}: a motor gives heat, expected 0 W or more.")
+    draught = DRAUGHT if motor is None else BLOWN
+    speed = draught if air is None else to_si(air, "m/s", name="--air-speed")
+    if not speed >= 0:
+        raise ScenarioError(f"--air-speed = {air}: expected 0 m/s or more.")
+    return Around(base, fan, cooler, motor, speed, boxed)
+
+
+def text(made: Unit, doc: str, speed: str, oil: str, around: Around) -> str:
+    """The rig file of a unit.
+
+    Args:
+        made: its sizes
+        doc: what it is
+        speed: of the input, as it is written
+        oil: entry of the catalogue
+        around: what stands around it and cools it
+    """
+    n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
+    worm = isinstance(made.stages[0], WormStage)
+    names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
+    values = {
+        "doc": doc,
+        "speed": speed,
+        "efficiency": efficiency,
+        "load": made.stages[0].T * made.ratio * efficiency,
+        "oil": oil,
+        "bath": sizing.bath(made),
+        "splash": sizing.splash(made) | {"r": "stage_1.r_1" if worm else _reach(made.stages[0], 0)},
+        "below": sizing.BELOW,
+        "reached": 100 * sizing.REACHED,
+        "side": SIDE,
+        "gap": GAP,
+        "overhang": OVERHANG,
+        "apart": APART,
+        "own_load": 0.0 if made.shafts[0].places else LIGHT,
+        "stages": [_stage(made, k) for k in range(n)],
+        "shafts": [_shaft(made, names, k) for k in range(n + 1)],
+        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
+        "fan": _fan(made) if around.fan else None,
+        "cooled": COOLED,
+        "cooler": _cooler(made, efficiency) if around.cooler else None,
+        "foot": _foot(made, around.base),
+        "motor": around.motor,
+        "air": around.air,
+        "draught": "beside a motor that cools itself" if around.air >= BLOWN else "with little draught",
+        "boxed": around.boxed,
+        **_bodies(made),
+    }
+    templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
+    templates.filters |= {"json": json.dumps, "at": _at}
+    return templates.get_template("new_rig.toml").render(values, num=_num, mm=_mm).strip() + "\n"
+
+
+def _at(parts: Iterable[str], *ports: str) -> list[str]:
+    """Ports, or outputs, of several parts."""
+    return [f"{part}.{port}" for part in parts for port in ports]
+
+
+def _num(value: float) -> str:
+    return f"{value:.4g}"
+
+
+def _mm(value: float) -> str:
+    return f"{1000 * value:.6g}"
+
+
+def _stage(made: Unit, k: int) -> dict[str, Any]:
+    s = made.stages[k]
+    if isinstance(s, BevelStage):
+        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
+        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
+    elif isinstance(s, PlanetaryStage):
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
+        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
+        shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
+    elif isinstance(s, WormStage):
+        rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
+    else:
+        twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
+    c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
+    shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
+    found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    found |= {"driver": "pinion", "driven": "wheel"}
+    return (
+        found
+        | shape
+        | {"r": _reach(s, k), "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
+    )
+
+
+def _reach(s: Stage, k: int) -> str:
+    """Radius of what moves the oil: that of the wheel, or how far planets reach."""
+    return f"{_mm(s.reach)} mm" if isinstance(s, PlanetaryStage) else f"stage_{k + 1}.r_2"
+
+
+def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
+    s = made.shafts[k]
+    radii = [f"stage_{k}.r_2"] * (k > 0) + [f"stage_{k + 1}.r_1"] * (k < len(made.stages))
+    places = [
+        {
+            "name": f"{names[k]}_bearing_{end}",
+            "path": f"{names[k]}_path_{end}",
+            "bearing": bearing,
+            "life": _num(life),
+            "dips": sizing.stands_in_oil(made, bearing),
+            "use": f"{s.kind}_bearing",
+        }
+        for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
+    ]
+    gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
+    support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
+    return {
+        "name": names[k],
+        "support": support,
+        "gears": gears,
+        "span": s.span,
+        "bearings": places,
+        "kind": s.kind,
+        "d": s.d,
+        "d_torsion": s.d_torsion,
+    }
+
+
+def _fan(made: Unit) -> dict[str, float]:
+    """A fan as wide as a cowl on the smaller side of the housing holds: air along the walls, and its torque."""
+    D = SWEEP * min(made.width, made.height)
+    return {"D": D, "k_v": AIR * D / 2, "k": FAN * 1.2 * D**5 / (2 * math.pi) ** 3, "share": AIR}
+
+
+def _cooler(made: Unit, efficiency: float) -> float:
+    """Conductance of a cooler that takes all that is lost at the name plate [W/K]."""
+    return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
+
+
+def _foot(made: Unit, base: str) -> dict[str, Any] | None:
+    """Foot of a unit, two strips along the housing, or its flange, and what they stand on."""
+    if base == "free":
+        return None
+    if base == "flange":
+        D, wide = min(made.length, made.height), 1 + 2 * BEYOND
+        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {_BOLTED}"
+        return {
+            "base": base,
+            "A": math.pi / 4 * (1 - SPIGOT**2) * D**2,
+            "count": BOLTS,
+            "d": BOLT * made.wall,
+            "A_frame": 2 * math.pi / 4 * (wide**2 - 1) * D**2,
+            "t_frame": FRAME * made.wall,
+            "L_frame": BEYOND * D,
+            "rule": f"{rule}; a steel plate {FRAME:g} times as thick as the walls, {wide:g} times as wide, in air",
+        }
+    outline, beyond = made.length * made.width, BEYOND * made.length
+    on = {
+        "concrete": "heat spreads below its outline into a concrete floor",
+        "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
+    }
+    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {_BOLTED}"
+    return {
+        "base": base,
+        "A": STRIPS * outline,
+        "count": BOLTS,
+        "d": BOLT * made.wall,
+        "outline": outline,
+        "A_frame": 2 * 2 * beyond * made.width,
+        "t_frame": FRAME * made.wall,
+        "L_frame": beyond,
+        "rule": f"{rule}; {on[base]}",
+    }
+
+
+def _bodies(made: Unit) -> dict[str, float]:
+    """Capacities, conductances and the box."""
+    slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
+    seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
+    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
+    mass = (1 + RIBBED) * IRON * made.area * made.wall
+    return {
+        "inertia": sum(STEEL * s.inertia / i**2 for s, i in zip(made.stages, slow, strict=True)),
+        "C_gears": 470 * STEEL * sum(s.volume for s in made.stages),
+        "C_shafts": 470 * shafts,
+        "mass": mass,
+        "C_half": 500 * mass / 2,
+        "wall": made.wall,
+        "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
+        "A_fins": 2 * RIBBED * made.area,
+        "fin_height": RIBS * made.wall,
+        "ribs": RIBS,
+        "area": made.area,
+        "length": made.length,
+        "width_box": made.width,
+        "height": made.height,
+        "share": made.length * made.width / made.area,
+    }

@@ -1,0 +1,41 @@
+"""What a healthy machine shows in a window: a free run at the machine's own knobs, with its spread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.windows import Windows
+from .logs import Fleet
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """Means over one window, by reading [K] (reads,): measured, predicted, and standard deviation of the difference."""
+
+    measured: np.ndarray
+    predicted: np.ndarray
+    sd: np.ndarray
+
+
+def expect(known: Fleet, window: Windows) -> Expected:
+    """What a machine shows in a window if it is as its healthy past and its type.
+
+    Knobs scatter between healthy seasons and windows as the healthy logs tell; the readings about the model as the
+    filter's do, independent as often as its errors are.
+
+    Args:
+        known: what the healthy logs say; the machine is the first
+        window: one of its logs
+    """
+    own, levels = known.filter, known.levels
+    sd = np.array([k.sd for k in own.knobs])
+    z = levels.mean[0] + np.vstack([np.zeros(len(sd)), np.diag(sd)])
+    shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, free=True, slopes=False).shown
+    read = np.where(window.counts[0, :, None], window.read[0], np.nan)
+    means = np.nanmean(np.where(np.isfinite(read), shown, np.nan), axis=1)
+    by = ((means[1:] - means[0]) / sd[:, None]).T
+    spread = by @ (levels.covariance[0] + levels.season + levels.window) @ by.T
+    alone = np.maximum(known.share * np.isfinite(read).sum(axis=0), 1.0)
+    return Expected(np.nanmean(read, axis=0), means[0], np.sqrt(np.diag(spread) + own.scatter**2 / alone))

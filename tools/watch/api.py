@@ -1,0 +1,95 @@
+"""A watch over growing logs: its files and options, and its events one after the other."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from ...model.errors import DataError
+from ...scenarios.given import RigLike
+from ...scenarios.measured.sensors import sensors_of
+from ..diagnose.request import Inputs, PlanRequest, Request, read_plan
+from .sources import Files, Source, Stream
+from .store import Store
+from .watch import WINDOW, Watch, identity, read_healthy
+
+File = str | Path
+#: Where the store notes which events have been taken.
+TAKEN = " taken"
+
+
+def watch(
+    rig: RigLike,
+    source: File,
+    *,
+    card: File | None = None,
+    reference_logs: Sequence[File] = (),
+    sibling_logs: Sequence[File] = (),
+    state: File | None = None,
+    every: int = WINDOW,
+    once: bool = False,
+    alpha: float = 0.05,
+    after: int | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Follow logs while they grow, and diagnose all that has come with every window of samples.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        source: CSV or Parquet file that grows, a folder whose files and sub-folders are a machine each, or "-" for
+            standard input
+        card: columns, units and accuracies
+        reference_logs: healthy logs of the one machine that is watched
+        sibling_logs: a healthy log of each of other machines; a watched machine with the name of such a file has it
+            as its own past
+        state: file that keeps what has come; with it a restart goes on where the last watch ended
+        every: samples of a window
+        once: end with the source instead of waiting for more
+        alpha: rate of false alarms of each diagnosis
+        after: number of the last event that is known; without it, that of the last one that was taken
+
+    Returns:
+        its events in order: "window", "alarm", "cleared", "warning"
+
+    Raises:
+        GearheatError: all problems of files and options at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> for event in gh.watch("wind_turbine", "log.csv", once=True):  # doctest: +SKIP
+        ...     print(event["event"], event["machine"])
+    """
+    problems = [] if every >= 3 else [f"--every {every}: a window has three samples or more."]
+    if str(source) != "-" and not Path(source).exists():
+        problems.append(f"{source}: there is no such file or folder.")
+    written = {} if state is None else {"--state": Path(state)}
+    found = read_plan(PlanRequest(rig, card=None if card is None else Path(card)), written, problems)
+    paths = [tuple(map(Path, logs)) for logs in (reference_logs, sibling_logs)]
+    request = Request(rig, card=found.request.card, reference_logs=paths[0], sibling_logs=paths[1], alpha=alpha)
+    inputs = Inputs(request, found.scenario, found.card, None, None, None)
+    from .judge import Judge  # what it needs loads slowly
+
+    judge = Judge(inputs, *read_healthy(inputs))
+    store = Store(None if state is None else Path(state), f"{identity(request)} {every}")
+    segment = inputs.card.columns.get("segment", "segment")
+    own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time)
+    return _events(own, store, _source(str(source), store, once), after)
+
+
+def _source(source: str, store: Store, once: bool) -> Source:
+    return Stream() if source == "-" else Files(Path(source), store.place, once)
+
+
+def _events(own: Watch, store: Store, source: Source, after: int | None) -> Iterator[dict[str, Any]]:
+    """Events as they are written."""
+    last: int = (store.place(TAKEN) or 0) if after is None else after
+    for _ in own.follow(source):
+        for number, text in list(store.events(last)):
+            yield json.loads(text)
+            store.move(TAKEN, last := number)
+    store.commit()
+    if not any(m.count or math.isfinite(m.answered) for m in store.machines.values()):
+        raise DataError("no sample came that can be used. Check the source, and the columns of its card.")

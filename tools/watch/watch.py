@@ -1,0 +1,181 @@
+"""Logs that are watched while they grow: the diagnosis of all that has come, asked again with every window."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...model.errors import DataError, GearheatError
+from ...scenarios.csv_table import in_si, split_unit
+from ...scenarios.measured.logs import NUMBERS, Log, find_time, parse_number, parse_time, read_log
+from ...scenarios.measured.table import Sensor
+from ..diagnose.request import Inputs, Request
+from .sources import Row, Source
+from .store import Cells, Machine, Store
+
+#: Samples of a window, as the diagnosis has them.
+WINDOW = 250
+#: Samples are kept so long: a year in question, and a month [s].
+KEPT = 396 * 86400.0
+#: A time that is so far ahead of the clock is none [s].
+AHEAD = 86400.0
+
+
+def read_healthy(inputs: Inputs) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
+    """The healthy logs of a request: of the one machine that is watched, and one of each of several.
+
+    Raises:
+        DataError: all problems of the files
+    """
+    problems, found = list[str](), []
+    for paths in (inputs.request.reference_logs, inputs.request.sibling_logs):
+        logs = []
+        for path in paths:
+            try:
+                logs.append(read_log(path, inputs.scenario, inputs.card))
+            except DataError as error:
+                problems.extend(error.problems)
+        found.append(tuple(logs))
+    if problems:
+        raise DataError(problems)
+    return found[0], found[1]
+
+
+class Watch:
+    """Samples go in, events come out.
+
+    Args:
+        sensors: of rig and card
+        segment: column that tells stretches apart
+        store: what has come and was said
+        judge: what the samples of a machine say
+        every: samples of a window
+        clock: time now [s]
+    """
+
+    def __init__(
+        self,
+        sensors: Iterable[Sensor],
+        segment: str,
+        store: Store,
+        judge: Callable[[str, str, Sequence[float], Sequence[Cells]], dict[str, Any]],
+        every: int,
+        clock: Callable[[], float],
+    ) -> None:
+        self.store, self.judge, self.every, self.clock = store, judge, every, clock
+        self._known = {name for s in sensors for name in (s.column, split_unit(s.column)[0])}
+        self._segment = segment
+
+    def follow(self, source: Source) -> Iterator[None]:
+        """Take what comes; yields after everything that was written.
+
+        Args:
+            source: of the samples
+        """
+        yield from self._answer()
+        for row in source.rows():
+            if row is not None:
+                self._take(row)
+            if row is None or any(m.count > self.every for m in self.store.machines.values()):
+                self.store.commit()
+                source.kept()
+                yield from self._answer()
+                yield
+        self.store.commit()
+        source.kept()
+        yield
+
+    def _take(self, row: Row) -> None:
+        """Add a row to what there is."""
+        m = self.store.machines.get(row.machine)
+        if row.source:
+            self.store.move(row.source, row.place)
+        try:
+            if row.problem:
+                raise DataError(row.problem)
+            time, kind = self._time(row)
+            if m is None:
+                m = self.store.machines[row.machine] = Machine(row.machine, kind)
+            if kind != m.kind:
+                raise DataError(f"{row.where}: has {kind}, earlier samples {m.kind}; the row is left out")
+        except DataError as error:
+            self._warn(m or Machine(row.machine, ""), str(error))
+            return
+        cells: Cells = {}
+        for column, cell in row.cells.items():
+            if column == self._segment:
+                cells[column] = str(cell)
+            elif column in self._known or split_unit(column)[0] in self._known:
+                try:
+                    number = parse_number(cell)
+                except (TypeError, ValueError):
+                    self._warn(m, f'{row.where}: {column} is "{cell}", expected a number; it counts as missing')
+                else:
+                    cells |= {} if math.isnan(number) else {column: number}
+        if not cells:
+            self._warn(m, f"{row.where}: holds no column of a sensor; the row is left out")
+        elif other := self.store.add(m, time, cells):
+            self._warn(m, f"{row.where}: {', '.join(other)} at a time that is there with another value, which is kept")
+
+    def _time(self, row: Row) -> tuple[float, str]:
+        """Time [s] and kind of time of a row."""
+        column = find_time(row.cells)
+        try:
+            time, kind = parse_time(row.cells[column])
+        except (KeyError, TypeError, ValueError, OverflowError):
+            said = f'its time is "{row.cells[column]}"' if column else "has no time"
+            raise DataError(f"{row.where}: {said}; the row is left out") from None
+        if kind == NUMBERS:
+            return float(in_si(np.array([time]), split_unit(column)[1] or "s", "s", name=row.where)[0]), kind
+        if time > self.clock() + AHEAD:
+            raise DataError(f"{row.where}: its time, {stamp(time, kind)}, has not come yet; the row is left out")
+        return time, kind
+
+    def _answer(self) -> Iterator[None]:
+        """Answer all windows that are full."""
+        for m in list(self.store.machines.values()):
+            while m.count > self.every:
+                self._window(m)
+                self.store.commit()
+                yield
+
+    def _window(self, m: Machine) -> None:
+        """Answer one window."""
+        until, begin = self.store.until(m, self.every), self.store.until(m, 1)
+        when = {"machine": m.name, "from": stamp(begin, m.kind), "to": stamp(until, m.kind)}
+        try:
+            answer = self.judge(m.name, m.kind, *self.store.rows(m, until))
+        except GearheatError as error:
+            self._warn(m, str(error), **when)
+        else:
+            alarm = answer["verdict"] != "consistent"
+            if alarm != (m.alarm is not None):
+                m.alarm = when["to"] if alarm else None
+                said = {"causes": answer["causes"], "verdict": answer["verdict"]} if alarm else {}
+                self.store.say({"event": "alarm" if alarm else "cleared", **when, **said})
+            self.store.say({"event": "window", **when, **answer, "alarm": m.alarm})
+        self.store.answered(m, until, KEPT)
+
+    def _warn(self, m: Machine, text: str, **more: Any) -> None:
+        if self.store.first(m, text):
+            self.store.say({"event": "warning", "machine": m.name, **more, "text": text})
+
+
+def stamp(time: float, kind: str) -> str | float:
+    """A time as events have it."""
+    return time if kind == NUMBERS else f"{datetime.fromtimestamp(time, UTC):%Y-%m-%dT%H:%M:%SZ}"
+
+
+def identity(request: Request) -> str:
+    """What must not change while a state is gone on with: the files of a request, by what they hold."""
+    digest = hashlib.sha256()
+    for path in (Path(str(request.rig)), *(path for _, path in request.files())):
+        if path.is_file():
+            digest.update(path.read_bytes())
+    return f"{request.rig} {digest.hexdigest()[:16]}"
