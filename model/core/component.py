@@ -95,6 +95,8 @@ class Component:
         scale: parameters of which a common factor is one on what the part does: its loss, conductance or capacity
         faults: causes by which it may fail, by their identifiers, each with the parameters that carry it and their
             exponents, {} where the cause acts beside the part; None for those of its role
+        axes: how the shafts lie that it joins: "coaxial", "parallel", "intersecting" or "crossed"; "same" where
+            its first and last flange are one shaft seen from two frames
         told: names of the values that it is constructed with
 
     Raises:
@@ -104,6 +106,7 @@ class Component:
     role: ClassVar[str] = ""
     scale: ClassVar[tuple[str, ...]] = ()
     faults: ClassVar[Faults | None] = None
+    axes: ClassVar[str] = "coaxial"
 
     def __init__(self, name: str, **values: Any) -> None:
         self.name = name

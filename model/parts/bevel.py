@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import ClassVar
 
 import casadi as ca
 
@@ -28,6 +29,8 @@ class BevelGearPair(GearPair):
     in opposite directions. An axial force is positive away from the apex; a support takes it as one towards its
     bearing a.
     """
+
+    axes: ClassVar[str] = "intersecting"
 
     pinion_force = ToothForce()
     wheel_force = ToothForce()

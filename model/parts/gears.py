@@ -48,6 +48,7 @@ class GearPair(ToothedPart):
 
     #: Sense of rotation of the wheel, seen with that of the pinion.
     turn: ClassVar[float] = -1.0
+    axes: ClassVar[str] = "parallel"
 
     pinion = Flange()
     wheel = Flange()

@@ -166,6 +166,7 @@ class TurningFrame(Component):
     """
 
     faults: ClassVar[Faults] = SOUND
+    axes: ClassVar[str] = "same"
 
     shaft = Flange()
     carrier = Flange()

@@ -38,6 +38,7 @@ class WormPair(Component):
 
     role: ClassVar[str] = "teeth"
     scale: ClassVar[tuple[str, ...]] = ("k_mu",)
+    axes: ClassVar[str] = "crossed"
 
     gears = HeatPort()
     lubricant = Lubricant()

@@ -11,10 +11,12 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
+from gearheat.scenarios.shipped import list_rigs
 from gearheat.tools.show.drawing import write_picture
 from gearheat.tools.show.fields import Field, courses, fields
-from gearheat.tools.show.heat_paths import heat_flows, heat_paths
-from gearheat.tools.show.sankey import heat_picture, place_columns
+from gearheat.tools.show.heat_paths import Path, heat_flows, heat_paths
+from gearheat.tools.show.machine import machine_picture
+from gearheat.tools.show.sankey import heat_picture, place_columns, sankey
 from gearheat.tools.solve.steady import conditions
 from pages import problems_of, words_that_collide
 
@@ -41,14 +43,17 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
     assert made == pytest.approx(taken, rel=0.01)
     assert taken == pytest.approx(gone, rel=0.01)
     assert all(places[p.begins].column < places[p.ends].column for p in paths)
-    assert not words_that_collide(heat_picture(rig, paths, values).figure)
+    kinds = {part.name: part.role for part in assembly.parts}
+    picture = heat_picture(rig, paths, values, kinds)
+    assert not words_that_collide(picture.figure)
+    assert all(0 <= x <= 1 and 0 <= y <= 1 for x, y, _ in picture.marks)
     for p in paths:  # heat goes from hot to cold
         ends = [values.get(f"{name}.T") for name in (p.begins, p.ends)]
         assert None in ends or ends[0] > ends[1]
 
 
 def test_a_machine_at_rest_has_a_picture():
-    picture = heat_picture("at rest", [], {})
+    picture = heat_picture("at rest", [], {}, {})
     assert "no heat flows" in [text.get_text() for text in picture.figure.axes[0].texts]
 
 
@@ -64,6 +69,45 @@ def test_steady_draws_where_the_heat_goes(gearheat, tmp_path, kind):
         text = plot.read_text(encoding="utf-8")
         assert problems_of(text) == []
         assert f"{found['values']['foot.Q_flow']:.4g}" in text and "cooling: radiation" in text
+
+
+@pytest.mark.parametrize("rig", list_rigs())
+def test_every_machine_has_a_drawing(rig):
+    """No word lies over another; each mesh, bearing and motor has its number."""
+    scenario = load(rig)
+    picture = machine_picture(scenario.spec.assembly(), scenario.entries, {}, rig, {})
+    assert not words_that_collide(picture.figure)
+    said = [words.partition(":")[0] for _, _, words in picture.marks]
+    for name, kind in scenario.types.items():
+        if kind.role in ("teeth", "bearing", "motor"):
+            assert name.replace("_", " ") in said
+
+
+def test_small_losses_of_one_kind_are_one_box():
+    """Six bearings of 1 W beside teeth of 100 W: "6 bearings", 6 W; nothing is lost."""
+    paths = [Path("teeth", "oil", "", 100.0), *(Path(f"b{k}", "oil", "", 1.0) for k in range(6))]
+    paths.append(Path("oil", "room", "", 106.0))
+    figure, marks = sankey(paths, {}, "heat", {"teeth": "teeth"} | {f"b{k}": "bearing" for k in range(6)})
+    words = [text.get_text() for text in figure.axes[0].texts]
+    assert sorted(words) == ["6 bearings\n6 W", "oil\n106 W", "room\n106 W", "teeth\n100 W"]
+    assert "6 bearings → oil: 6 W" in [mark[2] for mark in marks]
+
+
+def test_a_map_says_loads_and_percent():
+    """Torque that leaves is a load, efficiency is in percent, the operating point and the limit are told."""
+    w, tau = (v.ravel() for v in np.meshgrid([500.0, 1000.0, 1500.0], [-300.0, -200.0, -100.0]))
+    over = [Field("input.w", "rpm", w, 1000.0), Field("output.tau", "N.m", tau, -200.0)]
+    drawn = [Field("efficiency.eta", "1", 0.9 + w / 1e5), Field("oil.T", "degC", w / 10, limit=95.0)]
+    picture = fields("rig", over, drawn)
+    eta, oil = picture.figure.axes
+    assert (eta.get_title(), oil.get_title()) == ("efficiency [%]", "oil temperature [°C]")
+    assert (eta.get_xlabel(), eta.get_ylabel()) == ("input speed [rpm]", "output load [N.m]")
+    assert eta.get_ylim()[0] > 0 and len(eta.lines) == len(oil.lines) == 1
+    assert oil.lines[0].get_xydata().tolist() == [[1000.0, 200.0]]
+    assert "input speed 1500 rpm\noutput load 300 N.m\nefficiency 91.5 %" in [mark[2] for mark in picture.marks]
+    assert "red line" in picture.note and any(
+        len(c.get_edgecolor()) and c.get_linewidth()[0] > 2 for c in oil.collections
+    )
 
 
 def test_courses_are_drawn_to_be_zoomed(tmp_path):

@@ -54,10 +54,15 @@ def show(
     rig: str,
     errata: bool = False,
     everything: bool = False,
+    plot: Path | None = None,
     json: str | None = None,
 ) -> None:
     """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
+    console.plottable(plot)
     about = gh.show(rig)
+    if plot is not None:
+        about.save_picture(plot)
+        console.note(f"wrote {plot}")
     human = _print_errata if errata else partial(_print_rig, everything=everything)
     console.answer(about.as_dict(), json, lambda: human(about))
 

@@ -164,8 +164,9 @@ class Rivals:
 
     def _regress(self, data: Windows) -> np.ndarray:
         """Coefficients of regressions of all sensors on inputs now and before (terms, reads), window by window."""
-        reads: Any = range(data.read.shape[2])
-        A, b = [0.0 for _ in reads], [0.0 for _ in reads]
+        reads = range(data.read.shape[2])
+        A: list[Any] = [0.0 for _ in reads]
+        b: list[Any] = [0.0 for _ in reads]
         for u, y, n in zip(data.given, data.read, _lengths(data), strict=True):
             X = _lagged(u[:n] / self.scale)
             for j in reads:

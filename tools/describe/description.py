@@ -21,6 +21,7 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.console import cell
 from ..show.display import Answer
+from ..show.picture import Picture
 from ..solve.settings import find_unchecked, flat_of
 from ..solve.steady import conditions, leading_outputs, outside_of
 from .parts import first_line, law_line
@@ -48,6 +49,20 @@ class Description(Answer):
     scenario: Scenario
     flat: FlatModel
     rest: Result | None
+
+    def drawing(self) -> Picture:
+        """The machine: its shafts, teeth, bearings, seals, oil and housing, in the colours of its temperatures."""
+        from ..show.machine import end_words, machine_picture
+
+        bodies = [q.name for q in self.flat.states if q.unit == "K"] if self.rest is not None else []
+        values = {name: float(c[0]) for name, c in self.rest.columns.items()} if self.rest is not None else {}
+        return machine_picture(
+            self.scenario.spec.assembly(),
+            self.scenario.entries,
+            {name.removesuffix(".T"): values[name] for name in bodies if name in values},
+            self.scenario.name,
+            end_words(self.scenario.spec.of_type("ShaftEnd"), values),
+        )
 
     def effects(self) -> tuple[str, Sequence[str], list[list[Any]]] | None:
         """Title, head and rows of the parameters that matter most; None without a steady state or an effect."""

@@ -274,7 +274,8 @@ def _heat(assembly: Assembly, start: Mapping[str, float]) -> Figure | None:
     places = {name for path in paths for name in (path.begins, path.ends)}
     temperatures = {name: text(values[f"{name}.T"], "K", 4) for name in places if f"{name}.T" in values}
     title = "steady state at the initial inputs"
-    return sankey(paths, temperatures, title) if paths else None
+    kinds = {part.name: part.role for part in assembly.parts}
+    return sankey(paths, temperatures, title, kinds)[0] if paths else None
 
 
 def text_of(part: Component, hidden: Collection[str] = ()) -> PartText:

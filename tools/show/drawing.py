@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from matplotlib.figure import Figure
 
 from .console import write
 from .pages import OWN, as_data, html_table, load_plot_library, page
-from .picture import Picture
+from .picture import Mark, Picture
 
 #: Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -57,22 +59,37 @@ def legend(figure: Figure, panel: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=9)
 
 
+def marks_on(figure: Figure, told: Iterable[tuple[Axes, float, float, str]]) -> list[Mark]:
+    """Places on panels, in their own coordinates, with what a page says there, as shares of the finished figure."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out: it takes as long as to draw
+    back = figure.transFigure.inverted()
+    places = [(*(panel.transData + back).transform((x, y)), words) for panel, x, y, words in told]
+    return [(round(float(x), 4), round(1 - float(y), 4), words) for x, y, words in places]
+
+
+def hovering(figure: Figure, marks: Iterable[Mark]) -> Markup:
+    """A figure as SVG that says its marks beside the pointer, on pages that have the script `hover.js`."""
+    return Markup('<div class="hover" data-marks="{}">{}<output></output></div>').format(
+        json.dumps(list(marks), ensure_ascii=False), Markup(svg(figure))
+    )
+
+
 def write_picture(path: Path, picture: Picture) -> None:
     """Write a picture to a file whose ending says its kind, see `console.plottable`."""
     kind = path.suffix.lower()
     if kind == ".png":
         write(path, png(picture.figure))
         return
-    drawn = svg(picture.figure)
-    write(path, drawn if kind == ".svg" else _page(picture, drawn))
+    write(path, svg(picture.figure) if kind == ".svg" else _page(picture))
 
 
-def _page(picture: Picture, drawn: str) -> str:
+def _page(picture: Picture) -> str:
     return page(
         OWN,
         "plot.html",
         picture=picture,
-        figure=Markup(drawn),
+        figure=hovering(picture.figure, picture.marks),
         table=html_table(picture.columns, picture.rows) if picture.rows else "",
         data=as_data(picture.courses) if picture.courses else "",
         **load_plot_library(),

@@ -7,18 +7,23 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from ...model.units import from_si
-from .drawing import COLOURS, empty, legend
+from .drawing import COLOURS, empty, legend, marks_on
 from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3
 #: Contours of a panel.
 LEVELS = 9
-#: Points of a course that a page holds, at most.
+#: Points that a page holds of a course or a panel, at most.
 MOST = 3000
+#: Fills of a map by the unit of what it shows: light ones, as words stand on them.
+FILLS = {"°C": "YlOrRd", "%": "YlGn", "W": "PuBu"}
+#: What quantities are called, by the last word of their path.
+NOUNS = {"w": "speed", "tau": "torque", "load": "load", "T": "temperature", "P_loss": "loss", "eta": "efficiency"}
 #: Units of time by the shortest run they are for [s].
 UNITS = (("h", 3600.0, 36000.0), ("min", 60.0, 600.0), ("s", 1.0, 0.0))
 #: Kinds of lines, one for each round of the colours.
@@ -27,16 +32,49 @@ LINES = ("-", "--", ":", "-.")
 
 @dataclass(frozen=True)
 class Field:
-    """Values of one quantity at all points (n), nan where there is none, in the unit they are shown in."""
+    """Values of one quantity at all points (n), nan where there is none, in the unit they are shown in.
+
+    Attributes:
+        name: its path
+        unit: of the values
+        values: at all points
+        point: value at the operating point, where it is known
+        limit: value up to which the machine may run, where there is one
+    """
 
     name: str
     unit: str
     values: np.ndarray
+    point: float | None = None
+    limit: float | None = None
+
+    @property
+    def sign(self) -> float:
+        """-1 for a torque that only leaves the machine: it is drawn as a load."""
+        return -1.0 if self.name.endswith(".tau") and np.nanmax(self.values) <= 0 else 1.0
+
+    @property
+    def scale(self) -> float:
+        """What values are drawn in: loads without a sign, efficiencies in percent."""
+        return 100.0 if self.name.endswith(".eta") else self.sign
+
+    @property
+    def shown_unit(self) -> str:
+        """Unit of what is drawn."""
+        return "%" if self.scale == 100.0 else {"degC": "°C", "1": ""}.get(self.unit, self.unit)
+
+    @property
+    def shown(self) -> np.ndarray:
+        """Values as they are drawn."""
+        return self.scale * self.values
 
     @property
     def title(self) -> str:
-        """The name, with the unit where it has one."""
-        return self.name if self.unit == "1" else f"{self.name} [{self.unit}]"
+        """What it is in words, with the unit where it has one."""
+        part, _, key = self.name.rpartition(".")
+        noun = "load" if self.sign < 0 else NOUNS.get(key, key)
+        words = noun if part in (noun, "efficiency") else f"{part} {noun}".strip()
+        return " ".join([words.replace("_", " "), f"[{self.shown_unit}]" if self.shown_unit else ""]).strip()
 
 
 def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture:
@@ -56,28 +94,59 @@ def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture
         panel.set(title=one.title, xlabel=over[0].title)
     for panel in panels[len(drawn) :]:
         panel.set_visible(False)
+    marks = marks_on(
+        figure, [told for panel, one in zip(panels, drawn, strict=False) for told in _told(panel, over, one)]
+    )
     ends = [(f.name, float(np.nanmin(f.values)), float(np.nanmax(f.values)), f.unit) for f in (*over, *drawn)]
-    return Picture(figure, title, columns=("name", "low", "high", "unit"), rows=ends)
+    note = "Point at the picture to read values."
+    note += " The cross is the operating point." if all(f.point is not None for f in over) else ""
+    note += " The red line is the limit." if any(f.limit is not None for f in drawn) else ""
+    return Picture(figure, title, note, ("name", "low", "high", "unit"), ends, marks=marks)
+
+
+def _told(panel: Axes, over: Sequence[Field], one: Field) -> list[tuple[Axes, float, float, str]]:
+    """What is said at the points of a panel."""
+    good = np.flatnonzero(np.isfinite(one.values))
+    good = good[:: max(1, -(-len(good) // MOST))]
+    axes = [*over, one]
+    words = ["\n".join(f"{f.title.partition(' [')[0]} {f.shown[i]:.4g} {f.shown_unit}" for f in axes) for i in good]
+    places = over[1].shown if len(over) == 2 else one.shown
+    points = zip(over[0].shown[good], places[good], words, strict=True)
+    return [(panel, float(x), float(y), text) for x, y, text in points]
 
 
 def _lines(panel: Axes, over: Sequence[Field], one: Field) -> None:
-    order = np.argsort(over[0].values, kind="stable")
-    panel.plot(over[0].values[order], one.values[order], "o-", markersize=3, color=COLOURS[0])
+    order = np.argsort(over[0].shown, kind="stable")
+    panel.plot(over[0].shown[order], one.shown[order], "o-", markersize=3, color=COLOURS[0])
+    if one.limit is not None and np.nanmax(one.shown) > one.limit:
+        panel.axhline(one.limit, color="#c00000")
 
 
 def _contours(panel: Axes, over: Sequence[Field], one: Field) -> None:
-    """Contours between points, wherever they lie."""
+    """Contours between points, wherever they lie, filled, with the operating point and the limit."""
     good = np.isfinite(one.values)
-    x, y, values = over[0].values[good], over[1].values[good], one.values[good]
+    x, y, values = over[0].shown[good], over[1].shown[good], one.shown[good]
     panel.set_ylabel(over[1].title)
     if len(values) < 3 or np.ptp(x) == 0 or np.ptp(y) == 0:
         panel.text(0.5, 0.5, "too few points", transform=panel.transAxes, ha="center")
-    elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
+        return
+    if np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
         panel.text(0.5, 0.5, f"{values[0]:.4g} everywhere", transform=panel.transAxes, ha="center")
-    else:
-        low, high = values.min(), values.max()
-        levels = [v for v in MaxNLocator(LEVELS + 1, min_n_ticks=1).tick_values(low, high) if low < v < high]
-        panel.clabel(panel.tricontour(x, y, values, levels=levels, cmap="viridis"), fontsize=8)
+        return
+    low, high = values.min(), values.max()
+    levels = [v for v in MaxNLocator(LEVELS + 1, min_n_ticks=1).tick_values(low, high) if low < v < high]
+    panel.grid(False)
+    panel.tricontourf(x, y, values, levels=[low, *levels, high], cmap=FILLS.get(one.shown_unit, "Purples"), alpha=0.8)
+    lines = panel.tricontour(x, y, values, levels=levels, colors="#333333", linewidths=0.8)
+    halo = [withStroke(linewidth=2.5, foreground="white")]
+    for word in panel.clabel(lines, fontsize=9, colors="black"):
+        word.set_path_effects(halo)
+    if one.limit is not None and low < one.limit < high:
+        panel.tricontour(x, y, values, levels=[one.limit], colors="#c00000", linewidths=2.5)
+    if (at := [f.point for f in over if f.point is not None])[1:]:
+        panel.plot(
+            at[0] * over[0].scale, at[1] * over[1].scale, "P", markersize=11, color="black", mec="white", mew=1.2
+        )
 
 
 def courses(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> Picture:

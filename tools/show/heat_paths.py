@@ -82,6 +82,11 @@ def _places(assembly: Assembly) -> dict[str, _Place]:
     return found
 
 
+def place_names(assembly: Assembly) -> dict[str, str]:
+    """The body, oil or room whose temperature each port has that heat crosses."""
+    return {port: place.name for port, place in _places(assembly).items()}
+
+
 def _rules(part: Component) -> bool:
     """Whether a part gives its net a temperature: it stores heat, or is given one."""
     turns = any("w" in port.potentials() and port.flows() for port in part.ports.values())

@@ -17,7 +17,7 @@ from ..show.display import Columns, optional
 from ..show.picture import Picture
 from . import sampling
 from .settings import adjust, flat_of
-from .steady import conditions, leading_outputs
+from .steady import RATED, baths, conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
 
@@ -57,11 +57,15 @@ class Map(Columns):
         columns: name -> values at all points (n,) in the units shown to a person, nan where there is no steady state;
             speed and torque first
         units: unit of each column
+        point: speed and torque of the operating point
+        limits: temperatures of oil baths up to which gear units are rated
     """
 
     rig: str
     columns: Mapping[str, np.ndarray]
     units: Mapping[str, str]
+    point: Mapping[str, float]
+    limits: Mapping[str, float]
 
     @property
     def title(self) -> str:
@@ -102,8 +106,9 @@ class Map(Columns):
         """A panel of contours for each output."""
         from ..show.fields import Field, fields
 
-        drawn = [Field(n, self.units[n], c) for n, c in self.columns.items()]
-        return fields(f"{self.rig}: {drawn[0].name} and {drawn[1].name}", drawn[:2], drawn[2:])
+        known = self.columns.items()
+        drawn = [Field(n, self.units[n], c, self.point.get(n), self.limits.get(n)) for n, c in known]
+        return fields(f"{self.rig} over speed and load", drawn[:2], drawn[2:])
 
 
 def map_outputs(
@@ -150,7 +155,10 @@ def map_outputs(
     names = [*paths, *shows]
     columns = [*plan.values.T, *rows[:, : len(shows)].T]
     found = {n: from_si(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
-    return Map(plan.rig, found, {n: show_unit(plan.flat.quantity(n).unit) for n in names})
+    units = {n: plan.flat.quantity(n).unit for n in names}
+    point = {n: float(from_si(scenario.operating_point[n], units[n])) for n in paths if n in scenario.operating_point}
+    limits = {n: from_si(RATED, "K") for n in shows if n in {f"{bath}.T" for bath in baths(scenario)}}
+    return Map(plan.rig, found, {n: show_unit(unit) for n, unit in units.items()}, point, limits)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -155,7 +155,8 @@ class SteadyState(Quantities):
         guess = {q.name: self[q.name] for q in self.flat.states}
         there = solve(with_flows, conditions(self.scenario, with_flows), guess=guess)
         values = {name: float(column[0]) for name, column in there.columns.items()}
-        return heat_picture(self.scenario.name, heat_paths(assembly, values), values)
+        kinds = {part.name: part.role for part in assembly.parts}
+        return heat_picture(self.scenario.name, heat_paths(assembly, values), values, kinds)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the losses of the parts as bars.
@@ -170,6 +171,11 @@ class SteadyState(Quantities):
         panel.invert_yaxis()
         panel.set(title=self.title, xlabel="loss [W]")
         return panel
+
+
+def baths(scenario: Scenario) -> list[str]:
+    """Parts that hold an oil with a temperature of its own."""
+    return [name for name, kind in scenario.types.items() if kind.role == "bath" and "T" in list_declared(kind, State)]
 
 
 def _kilowatts(P: float) -> str:
