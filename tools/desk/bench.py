@@ -66,7 +66,7 @@ class Bench:
         with place:
             ui.spinner()
         try:
-            found = await run.io_bound(job)
+            found: T = await run.io_bound(job)
         except gh.GearheatError as error:
             place.clear()
             with place:

@@ -124,7 +124,7 @@ def _columns(table: Table, found: gh.CardText, look: Any) -> None:
 async def _diagnose(bench: Bench, place: Any, table: Table, found: gh.CardText, quick: bool) -> None:
     """Write the card, diagnose beside the page, and show the report and what is behind it."""
     card, report, extended = (table.beside(end) for end in (".card.toml", ".report.html", ".found.toml"))
-    stage = {"name": "reading", "share": 0.0, "stop": False}
+    stage: dict[str, Any] = {"name": "reading", "share": 0.0, "stop": False}
 
     def tell(name: str, share: float) -> None:
         if stage["stop"]:

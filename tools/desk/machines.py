@@ -34,7 +34,7 @@ def map_sheet(bench: Bench) -> None:
         path = made.save(bench.folder / f"{Path(chosen).stem}.html")
         bench.say("page", chosen, "-o", str(path), "--limit", kept)
         units.clear()
-        units.update(made.table()[1])
+        units.update((str(name), str(unit)) for name, unit in made.table()[1])
         seen.update(rig=chosen, hash="")
         with place:
             ui.element("iframe").props(f'src="{bench.link(path)}" id="map" title="{chosen}"')
@@ -100,7 +100,7 @@ def _beside(names: list[str], states: list[gh.SteadyState]) -> tuple[list[str], 
     """Quantities of two steady states beside each other, each where its rig has it."""
     values = [{row[0]: row for row in state.rows(state.first)} for state in states]
     every = dict.fromkeys(name for own in values for name in own)
-    rows = [[name, *(own[name][1] if name in own else "" for own in values)] for name in every]
+    rows: list[list[Any]] = [[name, *(own[name][1] if name in own else "" for own in values)] for name in every]
     told = {name: own[name] for own in reversed(values) for name in own}
     return ["name", *names, "unit", "meaning"], [[*row, *told[row[0]][2:]] for row in rows]
 

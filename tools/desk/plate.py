@@ -40,7 +40,7 @@ def new_sheet(bench: Bench) -> None:
     async def made() -> None:
         path = bench.folder / f"{name.value}.toml"
         texts = {key: str(field.value) for key, field in (plate | sheet).items() if field.value}
-        chosen = {"fan": bool(fan.value), "cooler": bool(cooler.value)}
+        chosen: dict[str, Any] = {"fan": bool(fan.value), "cooler": bool(cooler.value)}
 
         def job() -> tuple[gh.NewRig, gh.Description]:
             try:
