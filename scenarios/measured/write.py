@@ -27,17 +27,20 @@ HEAD = """\
 WIDTH = 80
 
 
-def default_card(scenario: Scenario, prior_sd: Mapping[str, float]) -> Card:
+def default_card(scenario: Scenario, prior_sd: Mapping[str, float], known: Card | None = None) -> Card:
     """The card that is taken where there is none, with every key that the rig has.
 
     Args:
         scenario: the rig
         prior_sd: relative standard deviation by part type and parameter
+        known: columns, units and signs of a table
     """
-    sensors = sensors_of(scenario, Card())
+    given = known or Card()
+    sensors = sensors_of(scenario, given)
+    context = {name: given.columns.get(name, name) for name in CONTEXT}
     stop = scenario.protocol.stop / 60.0 if scenario.protocol else 0.0
     return Card(
-        columns={s.name: s.column for s in sensors} | {name: name for name in CONTEXT},
+        columns={s.name: s.column for s in sensors} | context,
         units={s.column: s.unit for s in sensors if s.unit},
         channels={s.name: _channel(s) for s in sensors},
         sensors={s.name: _sensor(s) for s in sensors},

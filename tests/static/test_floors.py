@@ -29,6 +29,7 @@ ORDER = (
     ("tools.describe", "tools.export", "tools.films", "tools.rating"),
     ("tools.build", "tools.compare", "tools.page", "tools.verify", "tools.docs", "tools.watch"),
     ("tools.bench", "api"),
+    ("tools.desk",),
     ("tools.cli",),
     ("tools", "api.__main__"),
 )
@@ -109,14 +110,19 @@ def room_of(module: str) -> str:
     return module.split(".")[1] if module.startswith("tools.") and module.count(".") > 1 else ""
 
 
-def test_rooms_stand_on_at_most_six_levels() -> None:
+def test_the_desk_knows_the_public_names_alone() -> None:
+    known = {name for module in MODULES if module.startswith("tools.desk") for name in imported(module)}
+    assert {name for name in known if not name.startswith("tools.desk")} == {"api.__init__"}
+
+
+def test_rooms_stand_on_at_most_seven_levels() -> None:
     rooms: dict[str, set[str]] = {}
     for module in MODULES:
         rooms.setdefault(room_of(module), set()).update(map(room_of, imported(module)))
     levels = {"": 0}
     for room in TopologicalSorter({room: known - {room, ""} for room, known in rooms.items() if room}).static_order():
         levels[room] = 1 + max((levels[other] for other in rooms[room] - {room}), default=0)
-    assert max(levels.values()) <= 6, levels
+    assert max(levels.values()) <= 7, levels  # the last is the program, which starts the desk
 
 
 def circle(graph: dict[str, list[str]]) -> list[str]:

@@ -41,7 +41,7 @@ def options(
 PANELS = {
     "Your gearbox": (rigs.new, rigs.list_, rigs.show, rigs.parts, rigs.schema),
     "What it does": (solve.steady, solve.simulate, solve.design, solve.sweep, solve.map_, solve.rating, solve.teeth),
-    "FMU and page": (fmu.export, fmu.play, fmu.page),
+    "FMU, page, desk": (fmu.export, fmu.play, fmu.page, fmu.desk),
     "Measured data": (
         measured.run,
         measured.losses,

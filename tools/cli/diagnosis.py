@@ -6,7 +6,11 @@ from pathlib import Path
 
 import gearheat as gh
 
+from ...model.errors import ScenarioError
 from ..show import console
+
+#: Whether a column holds magnitudes, as options say it.
+MAGNITUDES = {"yes": True, "no": False}
 
 
 def diagnose(
@@ -88,16 +92,38 @@ def plan(
 
 def card(
     rig: str,
+    data: Path | None = None,
+    column: list[str] | None = None,
+    unit: list[str] | None = None,
+    magnitude: list[str] | None = None,
     out: Path | None = None,
     json: str | None = None,
 ) -> None:
-    """A card for the campaigns of a rig: every key with its default and what it means."""
-    found = gh.card(rig)
+    """A card for the campaigns of a rig: every key with its default and what it means, fitted to a table."""
+    columns, units, signs = (dict(map(_pair, texts or [])) for texts in (column, unit, magnitude))
+    if (columns or units or signs) and data is None:
+        raise ScenarioError("--column, --unit and --magnitude say what a table has. Name it with --data FILE.")
+    if wrong := [text for text in signs.values() if text not in MAGNITUDES]:
+        raise ScenarioError(f"--magnitude: expected SENSOR=yes or SENSOR=no, not {wrong[0]!r}.")
+    magnitudes = {name: MAGNITUDES[text] for name, text in signs.items()}
+    found = gh.card(rig, data, columns=columns, units=units, magnitudes=magnitudes)
+    for name, named in found.columns.items():
+        console.note(f"{named}: {name}")
+    for problem in found.problems:
+        console.note(f"not yet: {problem}")
     if out is not None:
         found.save(out)
         console.note(f"wrote {out}")
     if json is not None or out is None:
         console.answer(found.as_dict(), json, lambda: print(found.as_toml(), end=""))
+
+
+def _pair(text: str) -> tuple[str, str]:
+    """What stands before and behind the last sign of equality."""
+    name, sign, value = text.rpartition("=")
+    if not sign:
+        raise ScenarioError(f'"{text}": expected NAME=VALUE.')
+    return name.strip(), value.strip()
 
 
 def campaign(

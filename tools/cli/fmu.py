@@ -1,4 +1,4 @@
-"""A rig as an FMU or as a page, and an FMU played."""
+"""A rig as an FMU or as a page, an FMU played, and the desk."""
 
 from __future__ import annotations
 
@@ -96,6 +96,18 @@ def play(
     console.plottable(plot)
     run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)
     print_run(run, out, plot, json)
+
+
+def desk(
+    out: Path = Path("desk"),
+    port: int = 0,
+    browser: bool = True,
+) -> None:
+    """The commands by clicks: a local web app for tables and diagnoses, rigs of your own, maps and comparisons."""
+    console.use_one_thread()
+    from ..desk import serve
+
+    serve(out, port, browser=browser)
 
 
 def _print_fmu(found: Mapping[str, Any]) -> None:

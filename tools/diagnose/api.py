@@ -5,15 +5,20 @@ All problems of files and options are named before any work.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from ...model.errors import ScenarioError
+from ...model.errors import DataError, Problems, ScenarioError
 from ...model.files import flows
+from ...scenarios.csv_table import read_cells
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card
+from ...scenarios.measured.checks import too_small
+from ...scenarios.measured.guess import Known, guess_card, wanted_sensors
+from ...scenarios.measured.read import read_campaign
+from ...scenarios.measured.sensors import CONTEXT
 from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
 from ..show.console import as_json as json_text, file_of, progress_bar, write
@@ -31,6 +36,8 @@ File = str | Path
 Files = File | Sequence[File] | None
 #: Kinds of pictures by the ending of their file's name.
 PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
+#: Rows of a table that a guess of its columns shows.
+SHOWN = 5
 
 
 @dataclass(frozen=True)
@@ -164,6 +171,7 @@ def diagnose(
     series: File | None = None,
     reference_series: File | None = None,
     outputs: Outputs | None = None,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Diagnosis:
     """Compare measured data with the model of a rig, and name what explains the difference.
 
@@ -182,6 +190,7 @@ def diagnose(
         seed: of everything that is drawn
         series: logged courses of the tests of `data`, `reference_series` of those of `reference`
         outputs: files that will be written from the findings, checked before any work
+        progress: called with each stage and the share done; a bar on stderr without
 
     Raises:
         GearheatError: all problems of files and options at once
@@ -216,8 +225,8 @@ def diagnose(
     inputs = read(request, written, problems)
     from . import diagnosis  # what it needs loads slowly
 
-    with progress_bar() as progress:
-        return Diagnosis.model_construct(**dict(diagnosis.diagnose(inputs, progress)))
+    with progress_bar() as bar:
+        return Diagnosis.model_construct(**dict(diagnosis.diagnose(inputs, progress or bar)))
 
 
 def plan(
@@ -271,10 +280,18 @@ class CardText(Display):
     Attributes:
         rig: its name
         card: the card
+        columns: sensor, path or column of the context -> column of the table that was looked at
+        cells: its head and first rows
+        problems: why that table cannot be read with the card
+        reads: what columns may be: name -> what it reads or says
     """
 
     rig: str
     card: Card
+    columns: Mapping[str, str] = field(default_factory=dict)
+    cells: Sequence[Sequence[str]] = ()
+    problems: tuple[str, ...] = ()
+    reads: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -310,21 +327,47 @@ class CardText(Display):
         return place
 
 
-def card(rig: RigLike) -> CardText:
+def card(
+    rig: RigLike,
+    data: File | None = None,
+    *,
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    magnitudes: Mapping[str, bool] | None = None,
+) -> CardText:
     """A card for the campaigns of a rig: accuracies, priors and protocol, every key with its default.
 
     Args:
         rig: name, file or rig
+        data: table whose columns, units and signs are guessed
+        columns: those that are known: sensor, path or optional column -> column of the table, "" where it has none
+        units: those that are known: column of the table -> its unit
+        magnitudes: whether the column of a sensor holds magnitudes, by its name, where that is known
 
     Raises:
         ScenarioError: all that is wrong with the rig
+        DataError: the table is none at all, or there is no such sensor or column
 
     Example:
         >>> import gearheat as gh
         >>> gh.card("planetary").save("card.toml")  # doctest: +SKIP
     """
     scenario = scenario_of(rig)
-    return CardText(scenario.name, default_card(scenario, usual_priors(scenario)))
+    priors = usual_priors(scenario)
+    if data is None:
+        return CardText(scenario.name, default_card(scenario, priors))
+    path, problems = Path(data), Problems()
+    if not path.is_file():
+        raise DataError(f"--data {path}: there is no such file.")
+    guessed = guess_card(path, scenario, Known(columns or {}, units or {}, magnitudes or {}))
+    whole = default_card(scenario, priors, guessed)
+    with problems:
+        problems += too_small(read_campaign(path, scenario, whole))
+    header, rows = read_cells(path)
+    reads = {name: sensor.reads for name, sensor in wanted_sensors(scenario).items()}
+    reads |= {name: text for name, (text, _, _) in CONTEXT.items()}
+    cells = (header, *(row for _, row in rows[:SHOWN]))
+    return CardText(scenario.name, whole, guessed.columns, cells, tuple(problems), reads)
 
 
 def _path(file: File | None) -> Path | None:

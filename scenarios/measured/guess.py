@@ -1,0 +1,155 @@
+"""Which column of a table is which sensor, where no card says it: by words of the trade, units and signs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...model.errors import DataError, Problems, suggestion
+from ...model.files import tables
+from ...model.parts.shaft import ShaftEnd
+from ..csv_table import numbers, read_cells, scale, split_unit
+from ..scenario import Scenario
+from .card import Card, CardSensor
+from .nominal import Nominal
+from .sensors import CONTEXT, SI, default_instruments, sensors_of
+from .table import Sensor
+
+_TABLES = tables("scenarios.measured", "sensors.toml")
+WORDS: Mapping[str, Sequence[str]] = _TABLES["words"]
+ENDS: Mapping[str, Sequence[str]] = _TABLES["ends"]
+OTHER: Mapping[str, Sequence[str]] = _TABLES["other"]
+#: Units of columns without one, by the SI unit of what they hold.
+USUAL: Mapping[str, str] = {"K": "degC", "rad/s": "rpm", "N.m": "N.m", "W": "W", "A": "A", "1": "1"}
+#: Marks of a column for a sensor: the column is named as the sensor's, has its part's name, a word of its kind, or of
+#: its end.
+SAME, PART, KIND, END = 100, 8, 4, 2
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a user says of a table.
+
+    Args:
+        columns: sensor, path or column of the context -> column of the table, "" where it has none
+        units: column -> its unit
+        magnitudes: sensor -> whether its column holds magnitudes
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    magnitudes: Mapping[str, bool] = field(default_factory=dict)
+
+
+def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
+    """A card with the columns of a table, their units, and which of them hold magnitudes.
+
+    Args:
+        path: CSV file
+        scenario: the rig
+        said: what is known
+
+    Raises:
+        DataError: the table cannot be read at all, or a known name means no sensor or column
+    """
+    header, rows = read_cells(path)
+    cells = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
+    columns = said.columns
+    problems = Problems(
+        f'{path.name}: there is no column "{column}".{suggestion(column, header)}'
+        for column in (*columns.values(), *said.units)
+        if column and column not in header
+    )
+    problems.check(DataError)
+    known = {name: column for name, column in columns.items() if column}
+    known |= _context([h for h in header if h not in known.values()], columns)
+    wanted = wanted_sensors(scenario)
+    marks = [
+        (mark, -place, name, column)
+        for place, (name, sensor) in enumerate(wanted.items())
+        for column in header
+        if name not in columns and column not in known.values()
+        if (mark := _mark(column, sensor, scenario, wanted)) > 0
+    ]
+    for _, _, name, column in sorted(marks, key=lambda mark: mark[:2], reverse=True):
+        if name not in known and column not in known.values():
+            known[name] = column
+    card = Card(columns=known, units=_units(known, wanted) | dict(said.units), name=path.name)
+    return _turned(card, scenario, cells, said.magnitudes)
+
+
+def wanted_sensors(scenario: Scenario) -> dict[str, Sensor]:
+    """Sensors by their names, and by their paths those that the rig does not declare.
+
+    Args:
+        scenario: the rig
+    """
+    declared = {s.name: s for s in sensors_of(scenario, Card())}
+    read = {s.reads for s in declared.values()}
+    more = Card(columns={i.reads: i.column for i in default_instruments(scenario) if i.reads not in read})
+    return declared | {s.reads: s for s in sensors_of(scenario, more) if s.reads in more.columns}
+
+
+def _context(header: Iterable[str], columns: Mapping[str, str]) -> dict[str, str]:
+    """Columns of the context by whole words."""
+    stems = {h: split_unit(h)[0].casefold() for h in header}
+    found = {}
+    for name in (n for n in CONTEXT if n not in columns):
+        words = (name.casefold(), split_unit(name)[0].casefold(), *OTHER.get(name, ()))
+        if meant := [h for h, stem in stems.items() if stem in words or h.casefold() in words]:
+            found[name] = meant[0]
+    return found
+
+
+def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, Sensor]) -> int:
+    """How well a column fits a sensor, 0 where it does not."""
+    stem, unit = split_unit(column)
+    if column == sensor.column or stem == split_unit(sensor.column)[0]:
+        return SAME
+    if unit and not _fits(unit, sensor):
+        return 0
+    low, part = stem.casefold(), sensor.reads.partition(".")[0]
+    mark = KIND * any(word in low for word in WORDS.get(sensor.kind, ())) + PART * (part in low)
+    shaft = part in scenario.spec.of_type(ShaftEnd.__name__)
+    if shaft and (said := {end for end, words in ENDS.items() if any(word in low for word in words)}):
+        if _end(scenario, part) not in said:
+            return 0
+        mark += END
+    alone = sum(other.kind == sensor.kind for other in wanted.values()) == 1
+    return mark + (1 if unit and (mark or sensor.role == "given" or alone) and SI[sensor.kind] != "K" else 0)
+
+
+def _fits(unit: str, sensor: Sensor) -> bool:
+    problems = Problems()
+    with problems:
+        scale(unit, SI[sensor.kind], name=sensor.column)
+    return not problems
+
+
+def _end(scenario: Scenario, part: str) -> str:
+    """Whether power enters at a shaft end at the operating point."""
+    if scenario.drives:
+        return "input" if part == scenario.drives else "output"
+    nominal = Nominal(scenario)
+    return "input" if nominal.value(f"{part}.w") * nominal.value(f"{part}.tau") > 0 else "output"
+
+
+def _units(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str, str]:
+    """Units of columns whose names have none."""
+    bare = {name: column for name, column in known.items() if name in wanted and not split_unit(column)[1]}
+    return {column: USUAL[SI[wanted[name].kind]] for name, column in bare.items() if SI[wanted[name].kind] in USUAL}
+
+
+def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], said: Mapping[str, bool]) -> Card:
+    """The card with the sensors whose columns hold magnitudes: as said, or never below zero where the model's are."""
+    nominal, found = Nominal(scenario), {}
+    for sensor in sensors_of(scenario, card):
+        column = numbers([cell for cell in cells.get(sensor.column, ()) if cell])
+        guessable = sensor.signs == (1.0, 1.0) and SI[sensor.kind] != "K"
+        above = column is not None and len(column) > 0 and column.min() >= 0
+        positive = guessable and above and nominal.value(sensor.reads) < 0
+        if (magnitude := said.get(sensor.name, positive or None)) is not None:
+            signs = {} if magnitude else {"signs": [1.0, 1.0]}
+            found[sensor.name] = CardSensor.model_validate({"reads": sensor.reads, "magnitude": magnitude, **signs})
+    return card.model_copy(update={"sensors": found})

@@ -1,0 +1,93 @@
+"""Chromium driven by its own protocol: opens a page, clicks, runs JavaScript, waits for what shall come."""
+
+from __future__ import annotations
+
+import base64
+import itertools
+import json
+import re
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+from urllib.request import urlopen
+
+import pytest
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), "")
+
+
+class Browser:
+    """A page in a browser without a screen; a context that ends it."""
+
+    def __init__(self, folder: Path, width: int = 1280, height: int = 900) -> None:
+        client = pytest.importorskip("websockets.sync.client", reason="websockets drive the browser")
+        options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--hide-scrollbars"]
+        options += [f"--user-data-dir={folder}", f"--window-size={width},{height}", "about:blank"]
+        self.process = subprocess.Popen([CHROMIUM, *options], stderr=subprocess.PIPE, text=True)
+        assert self.process.stderr
+        found = next(m for line in self.process.stderr if (m := re.search(r"ws://([^/]*)/", line)))
+        with urlopen(f"http://{found[1]}/json/list") as answer:
+            page = next(p for p in json.load(answer) if p["type"] == "page")
+        self.socket = client.connect(page["webSocketDebuggerUrl"], max_size=None)
+        self.numbers = itertools.count()
+
+    def __enter__(self) -> Browser:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
+        self.socket.close()
+        self.process.terminate()
+        self.process.communicate()
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """The answer to a command of the protocol."""
+        number = next(self.numbers)
+        self.socket.send(json.dumps({"id": number, "method": method, "params": parameters}))
+        while (answer := json.loads(self.socket.recv(timeout=60))).get("id") != number:
+            pass
+        assert "error" not in answer, answer
+        result: dict[str, Any] = answer["result"]
+        return result
+
+    def open(self, address: str) -> None:
+        """Go to an address."""
+        self.call("Page.navigate", url=address)
+
+    def js(self, code: str) -> Any:
+        """The value of an expression of JavaScript."""
+        found = self.call("Runtime.evaluate", expression=code, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in found, found["exceptionDetails"]
+        return found["result"].get("value")
+
+    def wait(self, code: str, seconds: float = 90.0) -> None:
+        """Wait until an expression is true."""
+        end = time.monotonic() + seconds
+        while not self.js(f"Boolean({code})"):
+            assert time.monotonic() < end, f"never true: {code}\n{self.js('document.body.innerText')}"
+            time.sleep(0.1)
+
+    def click(self, text: str) -> None:
+        """Click the button or tab that says a text, as soon as it is seen."""
+        button = (
+            '[...document.querySelectorAll("button, .q-tab, [role=tab]")].find((b) => b.offsetParent && !b.disabled'
+            f" && b.innerText.trim().toLowerCase() === {json.dumps(text.lower())})"
+        )
+        self.wait(button)
+        self.js(f"{button}.click()")
+
+    def drop(self, place: str, name: str, text: str) -> None:
+        """Give a file to the field for files below an element."""
+        file = f"new File([{json.dumps(text)}], {json.dumps(name)})"
+        field = f"document.querySelector({json.dumps(place + ' input[type=file]')})"
+        self.wait(field)
+        self.js(
+            f"(() => {{ const held = new DataTransfer(), field = {field}; held.items.add({file});"
+            ' field.files = held.files; field.dispatchEvent(new Event("change", { bubbles: true })); })()'
+        )
+
+    def picture(self, path: Path) -> None:
+        """What is seen, as a PNG file."""
+        path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))

@@ -1,0 +1,149 @@
+"""The desk: its sheets in a browser, and nothing for those without its token; guesses of a table's columns."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from urllib.error import HTTPError
+from urllib.request import urlopen
+
+import gearheat as gh
+import pytest
+from browser import CHROMIUM, Browser
+from gearheat.model.errors import DataError
+
+NICEGUI = find_spec("nicegui") is not None
+needs_nicegui = pytest.mark.skipif(not NICEGUI, reason="the desk needs NiceGUI: pip install gearheat[desk]")
+#: What is seen of the page.
+SAID = "document.body.innerText"
+#: Moves a slider of the page in the sheet Map to its lower end.
+SLIDE = """(() => {
+  const page = document.querySelector("#map").contentDocument;
+  const slider = page.querySelector('[id="f-carrier.tau"]').parentElement.querySelector("[type=range]");
+  slider.value = slider.min;
+  slider.dispatchEvent(new Event("input"));
+})()"""
+TABLE = """Messpunkt;Drehzahl [1/min];Abtrieb [Nm];Antrieb [Nm];Ölsumpf [°C];Gehäuse [°C];Halle [°C];Bemerkung
+1;600;150;12,4;22,24;22,49;19,4;a
+2;600;350;28,6;25,54;25,16;19,8;
+3;900;150;12,42;25,44;25,06;20,6;
+4;900;580;47,28;34,06;32,99;21,4;
+5;1200;350;28,62;33,12;32,2;22,2;
+6;1450;580;47,25;42,58;41,19;23,8;b
+"""
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("table") / "messung.csv"
+    path.write_text(TABLE, encoding="utf-8")
+    return path
+
+
+def test_german_columns_are_guessed_with_units_and_signs(table: Path, tmp_path: Path) -> None:
+    found = gh.card("helical_two_stage", table)
+    assert not found.problems
+    assert {column: found.reads[name] for name, column in found.columns.items() if "." in found.reads[name]} == {
+        "Drehzahl [1/min]": "input.w",
+        "Abtrieb [Nm]": "output.tau",
+        "Antrieb [Nm]": "input.tau",
+        "Ölsumpf [°C]": "oil.T",
+        "Gehäuse [°C]": "wall.T",
+        "Halle [°C]": "room.T",
+    }
+    assert found.columns["point"] == "Messpunkt"
+    card = found.as_dict()
+    assert card["units"]["Drehzahl [1/min]"] == "rpm"
+    assert card["sensors"]["T_output"]["magnitude"] and not card["sensors"]["T_input"]["magnitude"]
+    assert found.cells[1][3] == "12.4"
+    said = gh.card("helical_two_stage", table, columns={"T_wall": ""}, magnitudes={"T_output": False})
+    assert "T_wall" not in said.columns
+    assert not said.as_dict()["sensors"]["T_output"]["magnitude"]
+    with pytest.raises(DataError, match='no column "Gehause'):
+        gh.card("helical_two_stage", table, columns={"T_wall": "Gehause [°C]"})
+
+
+def test_without_nicegui_the_command_says_which_extra_it_needs(gearheat, monkeypatch, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr("gearheat.tools.desk.find_spec", lambda name: None)
+    answer = gearheat("desk", "-o", tmp_path / "desk")
+    assert answer.code == 2
+    assert 'pip install "gearheat[desk]"' in answer.err
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    folder = tmp_path_factory.mktemp("desk")
+    command = [sys.executable, "-m", "gearheat", "desk", "--no-browser", "-o", "desk"]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True, env=environment)
+    assert process.stdout
+    yield process.stdout.readline().strip()
+    process.terminate()
+    process.communicate()
+
+
+@needs_nicegui
+def test_without_the_token_there_is_nothing(address: str) -> None:
+    client = pytest.importorskip("websockets.sync.client")
+    refused = pytest.importorskip("websockets.exceptions").InvalidStatus
+    found = re.fullmatch(r"(http://127\.0\.0\.1:\d+)/([\w-]{32})/", address)
+    assert found
+    root, token = found.groups()
+    with urlopen(address) as answer:
+        assert b"gearheat" in answer.read()
+    for path in (
+        "/",
+        f"/{token[:-1]}/",
+        f"/{token[:-1]}x/",
+        "/files/",
+        "/_nicegui_ws/socket.io/",
+        f"/x/{token}/",
+        "/%2F",
+    ):
+        with pytest.raises(HTTPError) as error:
+            urlopen(f"{root}/{path}")
+        assert error.value.code == 403
+    with pytest.raises(refused, match="403"):
+        client.connect(root.replace("http", "ws") + "/_nicegui_ws/socket.io/?EIO=4&transport=websocket")
+    with client.connect(address.replace("http", "ws") + "_nicegui_ws/socket.io/?EIO=4&transport=websocket") as socket:
+        assert socket.recv(timeout=10).startswith("0")
+
+
+def test_a_port_that_is_taken_is_refused(gearheat, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    pytest.importorskip("nicegui", reason="the desk needs NiceGUI: pip install gearheat[desk]")
+    answer = gearheat("desk", "--port", "99999", "-o", tmp_path / "desk")
+    assert answer.code == 2
+    assert "--port 99999" in answer.err
+
+
+@needs_nicegui
+@pytest.mark.skipif(not CHROMIUM, reason="no browser")
+def test_a_german_table_becomes_a_diagnosis_by_clicks_and_the_other_sheets_open(address: str, tmp_path: Path) -> None:
+    with Browser(tmp_path / "profile") as browser:
+        browser.open(address)
+        browser.drop(".q-uploader", "kaputt.csv", "a;b\n1;2;3\n")
+        browser.wait(f"{SAID}.includes('kaputt.csv line 2: 3 cells under 2 column names')")
+        browser.drop(".q-uploader", "messung.csv", TABLE)
+        browser.wait(f"{SAID}.includes('Gehäuse [°C]')")
+        assert not browser.js("document.querySelectorAll('.problem').length")
+        browser.click("Diagnose")
+        browser.wait("document.querySelector('.verdict')", 500)
+        browser.wait("document.querySelector('#report').contentDocument?.body?.innerText.includes('helical_two_stage')")
+        browser.wait("document.querySelector('canvas, .nicegui-echart svg')")
+        said = browser.js(SAID)
+        assert "gearheat card helical_two_stage --data desk/messung.csv -o desk/messung.card.toml" in said
+        assert "gearheat diagnose desk/messung.csv --rig helical_two_stage --card desk/messung.card.toml" in said
+        browser.click("New")
+        browser.click("Make")
+        browser.wait(f"{SAID}.includes('Assumed values, those that matter most first')")
+        browser.click("Rigs")
+        browser.click("Compare")
+        browser.wait(f"{SAID}.includes('Steady states at the operating points')")
+        browser.click("Map")
+        browser.click("Show")
+        browser.wait("document.querySelector('#map')?.contentDocument?.body?.dataset.ready", 300)
+        browser.js(SLIDE)
+        browser.wait(f"{SAID}.includes(\"gearheat steady planetary --set 'carrier.tau=250 N.m'\")")

@@ -1,0 +1,80 @@
+"""Sheet of a rig of one's own: from a name plate to a rig file, and the rule of every assumed value."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gearheat as gh
+from nicegui import ui
+
+from .bench import Bench, digits
+
+#: The name plate: option -> what it is, what stands there at first.
+PLATE = {
+    "stages": ("Stages from the input", "helical,helical"),
+    "ratio": ("Ratio", "12.56"),
+    "power": ("Power at the input", "7.5 kW"),
+    "speed": ("Speed of the input", "1450 rpm"),
+    "oil": ("Oil", "ISO VG 220 mineral"),
+}
+#: What a data sheet may say besides.
+SHEET = {
+    "centre_distance": "Centre distance of the last stage, 160 mm",
+    "housing": "Housing, 800x370x430 mm",
+    "oil_volume": "Oil in it, 20 l",
+}
+#: Beginning of the source of a value that nobody gave.
+ASSUMED = "assumed"
+
+
+def new_sheet(bench: Bench) -> None:
+    """A rig from its name plate, and what was assumed of it."""
+    with ui.row().classes("items-end"):
+        name = ui.input("Name", value="mine")
+        plate = {key: ui.input(label, value=value) for key, (label, value) in PLATE.items()}
+        sheet = {key: ui.input(label).classes("w-80") for key, label in SHEET.items()}
+        fan, cooler = ui.checkbox("fan"), ui.checkbox("cooler")
+        make = ui.button("Make")
+    place = ui.column().classes("w-full")
+
+    async def made() -> None:
+        path = bench.folder / f"{name.value}.toml"
+        texts = {key: str(field.value) for key, field in (plate | sheet).items() if field.value}
+        chosen: dict[str, Any] = {"fan": bool(fan.value), "cooler": bool(cooler.value)}
+
+        def job() -> tuple[gh.NewRig, gh.Description]:
+            try:
+                known: dict[str, Any] = {**texts, "ratio": float(texts.get("ratio", ""))}
+            except ValueError:
+                raise gh.GearheatError(f"--ratio {texts.get('ratio', '')!r} is no number.") from None
+            return gh.new(str(name.value), **known, **chosen, out=path), gh.show(path)
+
+        found = await bench.work(place, job)
+        if found is None:
+            return
+        options = [word for key, text in texts.items() for word in (f"--{key.replace('_', '-')}", text)]
+        bench.say("new", str(name.value), *options, *(f"--{key}" for key, on in chosen.items() if on), "-o", str(path))
+        with place:
+            _answer(*found)
+
+    make.on_click(made)
+
+
+def _answer(rig: gh.NewRig, about: gh.Description) -> None:
+    """What it does at the name plate, and what was assumed: what matters most first."""
+    sizes = rig.sizes
+    ui.label(
+        f"{sizes['file']}: i = {sizes['ratio']:.5g}, oil {sizes['oil_degC']:.1f} degC, loss {sizes['loss_W']:.0f} W,"
+        f" efficiency {100 * sizes['efficiency']:.2f} %, {sizes['assumed']} values assumed"
+    ).classes("text-lg")
+    for note in rig.notes:
+        ui.label(note)
+    effects = about.effects()
+    leading = [row[0] for row in effects[2]] if effects else []
+    lines = {line["name"]: line for line in about.found["parameters"] if line["source"].startswith(ASSUMED)}
+    order = [*(name for name in leading if name in lines), *(name for name in lines if name not in leading)]
+    heads = {"name": "name", "value": "value", "unit": "unit", "doc": "what it is", "source": "rule"}
+    columns = [{"name": key, "label": label, "field": key, "align": "left"} for key, label in heads.items()]
+    cells = [{key: digits({**lines[name], **(lines[name]["written"] or {})}[key]) for key in heads} for name in order]
+    title = "Assumed values, those that matter most first"
+    ui.table(columns=columns, rows=cells, title=title, row_key="name").props("dense flat wrap-cells").classes("assumed")
