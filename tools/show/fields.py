@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patheffects import withStroke
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
 
 from ...model.units import from_si
@@ -138,7 +138,7 @@ def _contours(panel: Axes, over: Sequence[Field], one: Field) -> None:
     panel.grid(False)
     panel.tricontourf(x, y, values, levels=[low, *levels, high], cmap=FILLS.get(one.shown_unit, "Purples"), alpha=0.8)
     lines = panel.tricontour(x, y, values, levels=levels, colors="#333333", linewidths=0.8)
-    halo = [withStroke(linewidth=2.5, foreground="white")]
+    halo: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="white")]
     for word in panel.clabel(lines, fontsize=9, colors="black"):
         word.set_path_effects(halo)
     if one.limit is not None and low < one.limit < high:

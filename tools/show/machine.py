@@ -18,17 +18,36 @@ from .heat_paths import place_names
 from .picture import Picture
 from .train import HALF, Mesh, Shaft, Train, lay_out
 
-#: Inches of a unit of the drawing, width of the list [inch], height of a line [inch].
-UNIT, LIST, LINE = 0.62, 3.3, 0.17
-#: Half the width of a face, of a shaft, of a bearing; how far an end stands out; step from bearing to bearing.
-FACE, THICK, BEARING, OUT, NEXT = 0.3, 0.06, 0.14, 0.75, 0.4
+#: Length of a unit of the drawing [inch].
+UNIT = 0.62
+#: Width of the list [inch].
+LIST = 3.3
+#: Height of a line of the list [inch].
+LINE = 0.17
+#: Half the width of a face.
+FACE = 0.3
+#: Half the width of a shaft.
+THICK = 0.06
+#: Half the width of a bearing.
+BEARING = 0.14
+#: How far a shaft end stands out.
+OUT = 0.75
+#: Step from bearing to bearing.
+NEXT = 0.4
 #: Level of the oil where nothing says more, as a share of the housing.
 LOW = 0.28
 #: Letters of a line of the list.
 LETTERS = 46
 #: Length of a tooth of a bevel gear, as a share of its cone.
 CONE = 0.35
-STEEL, METAL, OIL, EDGE = "#a9bccf", "#5f6b78", "#f2c14e", "#333333"
+#: Colour of gears without a temperature.
+STEEL = "#a9bccf"
+#: Colour of bearings, pins and seals without a temperature.
+METAL = "#5f6b78"
+#: Colour of oil without a temperature.
+OIL = "#f2c14e"
+#: Colour of outlines.
+EDGE = "#333333"
 #: Temperatures at the ends of the colours [K], spread at least so far [K].
 SPREAD = 10.0
 
@@ -61,8 +80,9 @@ class _Drawing:
         """The number of a part in the list, and what a page says there."""
         number = self.numbered.setdefault(part, next(self.numbers))
         circle = {"boxstyle": "circle,pad=0.18", "facecolor": "white", "edgecolor": EDGE, "linewidth": 0.6}
-        self.panel.text(*at, str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
-        self.marks.append((float(at[0]), float(at[1]), self.told[part]))
+        x, y = float(at[0]), float(at[1])
+        self.panel.text(x, y, str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
+        self.marks.append((x, y, self.told[part]))
 
 
 def machine_picture(
@@ -214,8 +234,9 @@ def _draw_set(d: _Drawing, mesh: Mesh, shaft: Shaft, s: float) -> None:
         d.box(shaft, s, half - 0.05, 1.12, name)
         at = shaft.point(s)
         wide, high = (0.75, 1.9) if "wave" in names else (0.84, 0.84)
-        round_ = {"facecolor": "white", "edgecolor": EDGE, "linewidth": 0.8, "zorder": 5, "alpha": 0.6}
-        d.panel.add_patch(Ellipse((float(at[0]), float(at[1])), wide, high, **round_))
+        middle = float(at[0]), float(at[1])
+        round_ = Ellipse(middle, wide, high, facecolor="white", edgecolor=EDGE, linewidth=0.8, zorder=5, alpha=0.6)
+        d.panel.add_patch(round_)
     for side in (-1, 1) if mesh.held else ():
         top = shaft.point(s, side * 1.62)
         d.panel.plot([top[0] - 0.35, top[0] + 0.35], [top[1]] * 2, color=EDGE, lw=1.2, zorder=4)
@@ -260,7 +281,8 @@ def _draw_shaft(
             out += 0.8
         place = shaft.point(edge + sign * (out + 0.2))
         across = "center" if not shaft.flat else "right" if sign < 0 else "left"
-        d.panel.text(*place, words, fontsize=8, va="center" if shaft.flat else "top", ha=across, linespacing=1.15)
+        down = "center" if shaft.flat else "top"
+        d.panel.text(float(place[0]), float(place[1]), words, fontsize=8, va=down, ha=across, linespacing=1.15)
         d.outside.append(shaft.point(edge + sign * (out + 1.1)))
         for name in seals[k :: len(stand_out)]:
             for b in (-1, 1):
@@ -285,9 +307,10 @@ def _draw_housing(d: _Drawing, assembly: Assembly, train: Train) -> None:
         return
     (x0, y0), (x1, y1) = np.min(d.corners, axis=0) - 0.2, np.max(d.corners, axis=0) + 0.2
     surface = next((part.name for part in assembly.parts if part.role == "surface"), "")
-    shape = {"boxstyle": "round,pad=0.12", "zorder": 0, "linewidth": 2.5}
     paper = f"{d.fills[surface]}40" if surface in d.fills else "#f7f8fa"
-    d.panel.add_patch(FancyBboxPatch((x0, y0), x1 - x0, y1 - y0, facecolor=paper, edgecolor="#8894a2", **shape))
+    walls = FancyBboxPatch((x0, y0), x1 - x0, y1 - y0, "round,pad=0.12", facecolor=paper, edgecolor="#8894a2")
+    walls.set(zorder=0, linewidth=2.5)
+    d.panel.add_patch(walls)
     bath = next((part for part in assembly.parts if part.role == "bath"), None)
     if bath is None or not all(shaft.flat for shaft in train.shafts):
         return
@@ -330,8 +353,6 @@ def end_words(ends: Sequence[str], values: Mapping[str, float]) -> dict[str, str
     found = {}
     for end in ends:
         w, tau = values.get(f"{end}.w"), values.get(f"{end}.tau")
-        words = [f"{abs(w) * 30 / np.pi:.4g} rpm"] * (w is not None) + [f"{abs(tau or 0.0):.4g} N.m"] * (
-            tau is not None
-        )
-        found[end] = "\n".join(words)
+        speed = [] if w is None else [f"{abs(w) * 30 / np.pi:.4g} rpm"]
+        found[end] = "\n".join([*speed, *([] if tau is None else [f"{abs(tau):.4g} N.m"])])
     return found
