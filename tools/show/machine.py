@@ -80,9 +80,8 @@ class _Drawing:
         """The number of a part in the list, and what a page says there."""
         number = self.numbered.setdefault(part, next(self.numbers))
         circle = {"boxstyle": "circle,pad=0.18", "facecolor": "white", "edgecolor": EDGE, "linewidth": 0.6}
-        x, y = float(at[0]), float(at[1])
-        self.panel.text(x, y, str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
-        self.marks.append((x, y, self.told[part]))
+        self.panel.text(at[0], at[1], str(number), fontsize=7, ha="center", va="center", zorder=9, bbox=circle)
+        self.marks.append((float(at[0]), float(at[1]), self.told[part]))
 
 
 def machine_picture(
@@ -234,9 +233,10 @@ def _draw_set(d: _Drawing, mesh: Mesh, shaft: Shaft, s: float) -> None:
         d.box(shaft, s, half - 0.05, 1.12, name)
         at = shaft.point(s)
         wide, high = (0.75, 1.9) if "wave" in names else (0.84, 0.84)
-        middle = float(at[0]), float(at[1])
-        round_ = Ellipse(middle, wide, high, facecolor="white", edgecolor=EDGE, linewidth=0.8, zorder=5, alpha=0.6)
-        d.panel.add_patch(round_)
+        oval = Ellipse(
+            (at[0], at[1]), wide, high, facecolor="white", edgecolor=EDGE, linewidth=0.8, zorder=5, alpha=0.6
+        )
+        d.panel.add_patch(oval)
     for side in (-1, 1) if mesh.held else ():
         top = shaft.point(s, side * 1.62)
         d.panel.plot([top[0] - 0.35, top[0] + 0.35], [top[1]] * 2, color=EDGE, lw=1.2, zorder=4)
@@ -281,8 +281,9 @@ def _draw_shaft(
             out += 0.8
         place = shaft.point(edge + sign * (out + 0.2))
         across = "center" if not shaft.flat else "right" if sign < 0 else "left"
-        down = "center" if shaft.flat else "top"
-        d.panel.text(float(place[0]), float(place[1]), words, fontsize=8, va=down, ha=across, linespacing=1.15)
+        d.panel.text(
+            place[0], place[1], words, fontsize=8, va="center" if shaft.flat else "top", ha=across, linespacing=1.15
+        )
         d.outside.append(shaft.point(edge + sign * (out + 1.1)))
         for name in seals[k :: len(stand_out)]:
             for b in (-1, 1):
@@ -353,6 +354,7 @@ def end_words(ends: Sequence[str], values: Mapping[str, float]) -> dict[str, str
     found = {}
     for end in ends:
         w, tau = values.get(f"{end}.w"), values.get(f"{end}.tau")
-        speed = [] if w is None else [f"{abs(w) * 30 / np.pi:.4g} rpm"]
-        found[end] = "\n".join([*speed, *([] if tau is None else [f"{abs(tau):.4g} N.m"])])
+        words = [] if w is None else [f"{abs(w) * 30 / np.pi:.4g} rpm"]
+        words += [] if tau is None else [f"{abs(tau):.4g} N.m"]
+        found[end] = "\n".join(words)
     return found

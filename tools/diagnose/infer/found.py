@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ..model.formula import Formula
+from ..model.noise import Term
 from . import screen
 from .fit import Fit
 from .prior import Prior
@@ -34,6 +35,11 @@ class Extra:
     channels: tuple[str, ...]
     columns: np.ndarray
     log_prior: float
+
+    @property
+    def term(self) -> Term:
+        """Its covariance."""
+        return Term(self.form, self.size * self.columns)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.formula import Formula
-from ..model.noise import Term as NoiseTerm, per_group, walk
+from ..model.noise import per_group, walk
 from .evidence import WIDTHS
 from .fit import Fit
 from .prior import GROSS, OUTSIDE, Prior
@@ -58,10 +58,6 @@ class Term:
     def scatters(self) -> bool:
         """Whether it is a covariance of several columns."""
         return self.acting is None and self.aside is None
-
-    def scatter(self, width: float) -> NoiseTerm:
-        """The covariance term at a standard deviation."""
-        return NoiseTerm(self.label, width * self.columns)
 
     @property
     def label(self) -> str:

@@ -6,7 +6,7 @@ at the best of them until the best one stays. All fits are weighed alike, nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -19,7 +19,7 @@ from ..model.formula import Formula
 from . import screen, sets
 from .draws import correction
 from .evidence import WIDTHS, White
-from .fit import Fit, bounds, fitted, started
+from .fit import Fit, Start, bounds, fitted, started
 from .found import Extra, Found, Hypothesis
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
@@ -35,6 +35,8 @@ WITHIN = 8.0
 ALONE = 10
 #: The same where nothing looks wrong.
 QUIET_ALONE = 4
+#: Causes that are fitted in place of one of the leading set.
+EXCHANGED = 4
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
@@ -115,6 +117,7 @@ class Weighing:
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
         self.hypotheses: dict[_Key, Hypothesis] = {}
+        self.exchanged = set[_Key]()
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
@@ -152,6 +155,8 @@ class Weighing:
                     self._fit_alone(near, look)
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
+            if k:
+                self._exchange()
             if k > 1 and self.leader().fit is best:
                 break
         return self._weighed()
@@ -209,21 +214,51 @@ class Weighing:
 
     def _fit_alone(self, near: Fit, look: screen.Look, wanted: Collection[str] = ()) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        log_bf = look.by_form(len(self.formulas))
-        value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
-        best: dict[str, int] = {}
-        for k in np.argsort(-value, kind="stable"):
-            best.setdefault(self.formulas[k].cause.id, int(k))
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
-        for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
-            formula = self.formulas[k]
-            start, own = look.start(k), np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
-            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
+        for start, logs in self._promising(look, (), n, wanted):
+            formula = start.acting.formula
             z, _ = near.moved(self.problem, start.effect)
             for aside in dict.fromkeys((self.problem.aside, self.whole.aside)):
                 with suppress(SolveError):
                     fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
                     self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
+
+    def _promising(
+        self, look: screen.Look, taken: Collection[str], n: int, wanted: Collection[str] = ()
+    ) -> Iterator[tuple[Start, dict[str, float]]]:
+        """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms."""
+        log_bf = look.by_form(len(self.formulas))
+        value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
+        best: dict[str, int] = {}
+        for k in np.argsort(-value, kind="stable"):
+            if self.formulas[k].cause.family not in taken:
+                best.setdefault(self.formulas[k].cause.id, int(k))
+        for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
+            own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
+            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
+
+    def _exchange(self) -> None:
+        """Fits what promises most in place of each cause of the leading set, the others kept.
+
+        To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none.
+        """
+        key, best = max(self.hypotheses.items(), key=lambda item: item[1].log_joint)
+        acting, noise = best.fit.look.acting, tuple(e.term for e in best.extras)
+        if len(acting) < 2 or key in self.exchanged:
+            return
+        self.exchanged.add(key)
+        problem = self.whole.without(key[2]).beside(noise)
+        for a in acting:
+            rest = [b for b in acting if b is not a]
+            with suppress(SolveError):
+                near = fitted(problem, rest, best.fit.look.z, best.fit.noise.scales)
+                look = screen.look(problem, near, self.formulas)
+                for start, logs in self._promising(look, {b.formula.cause.family for b in rest}, EXCHANGED):
+                    z, kept = near.moved(problem, start.effect)
+                    fit = fitted(problem, [*kept, start.acting], z, near.noise.scales)
+                    forms = {c: known for c, known in best.forms.items() if c != a.id} | {start.acting.id: logs}
+                    own = frozenset(b.formula for b in (*kept, start.acting))
+                    self._keep((own, *key[1:]), fit, best.extras, forms)
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
@@ -274,18 +309,17 @@ class Weighing:
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [started(one, size) for k, size in begun if (one := terms[k].acting) is not None]
-        extra = tuple(term.scatter(width) for term, width in scatters)
-        problem = self.whole.without(own.key[2]).beside(extra)
-        fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         extras = tuple(
             Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)))
             if t.formula
             else Extra(None, t.name, w, t.channels, t.columns, t.log_prior)
             for t, w in scatters
         )
+        problem = self.whole.without(own.key[2]).beside(tuple(e.term for e in extras))
+        fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
 
-    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: dict[str, dict[str, float]]) -> None:
+    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
