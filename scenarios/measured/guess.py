@@ -22,9 +22,14 @@ ENDS: Mapping[str, Sequence[str]] = _TABLES["ends"]
 OTHER: Mapping[str, Sequence[str]] = _TABLES["other"]
 #: Units of columns without one, by the SI unit of what they hold.
 USUAL: Mapping[str, str] = {"K": "degC", "rad/s": "rpm", "N.m": "N.m", "W": "W", "A": "A", "1": "1"}
-#: Marks of a column for a sensor: the column is named as the sensor's, has its part's name, a word of its kind, or of
-#: its end.
-SAME, PART, KIND, END = 100, 8, 4, 2
+#: Mark of a column that is named as a sensor's.
+SAME = 100
+#: Mark of a column that has the name of a sensor's part.
+PART = 8
+#: Mark of a column that has a word of a sensor's kind.
+KIND = 4
+#: Mark of a column that has a word of a sensor's end.
+END = 2
 
 
 @dataclass(frozen=True)

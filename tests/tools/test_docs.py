@@ -14,7 +14,7 @@ from gearheat.tools.docs.blocks import PAGES
 
 def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
     pytest.importorskip("myst_parser")
-    answer = gearheat("docs", "-o", tmp_path / "site", "--run", "none")
+    answer = gearheat("docs", "-o", tmp_path / "site")
     assert answer.code == 0, answer.err
     pages = {page.stem for page in (tmp_path / "site" / "generated" / "parts").glob("*.html")}
     assert pages >= set(PARTS)
@@ -22,6 +22,11 @@ def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path)
     assert "--power-flow" in commands
     tutorial = (tmp_path / "site" / "tutorials" / "own_gearbox.html").read_text(encoding="utf-8")
     assert '<span class="caption-text">card.toml</span>' in tutorial
+    assert "building with Sphinx" in answer.err and "--run quick" in answer.err
+    laws = (tmp_path / "site" / "theory" / "laws.html").read_text(encoding="utf-8")
+    assert laws.count("<math") > 50 and "mathjax" not in laws.lower()
+    python = (tmp_path / "site" / "generated" / "api" / "index.html").read_text(encoding="utf-8")
+    assert "steady" in python and "diagnose" in python
     for page in (tmp_path / "site").rglob("*.html"):
         text = page.read_text(encoding="utf-8")
         assert 'name="viewport"' in text and "/narrow.css" in text, f"{page.name} may be wider than its screen"

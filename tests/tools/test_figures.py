@@ -25,6 +25,7 @@ from pages import words_that_collide
 def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
     """The figures that are drawn; at the end their words are looked at."""
     found: list[Figure] = []
+    monkeypatch.setattr(report, "hovering", lambda figure, marks: found.append(figure) or "<svg></svg>")
     for module in (page, plan, report):
         monkeypatch.setattr(module, "svg", lambda figure: found.append(figure) or "<svg></svg>")
     yield found

@@ -92,8 +92,12 @@ def test_the_report_is_one_file_that_needs_no_other(ran):
     assert problems_of(page) == []
     for words in ("How close", "noise floor", "Warm-up", "Where the power goes", "Laws", "Parameters", "SKF"):
         assert words in page
-    assert page.count("<svg") == 4
-    assert "<script" not in page and "<link" not in page and 'src="' not in page
+    assert page.count("<svg") == 5
+    assert "<link" not in page and 'src="' not in page
+    assert "The simulation is this close to 8 readings" in page and "It is worst for the" in page
+    assert "gearheat diagnose planetary names its causes" in page and "not built yet" in page
+    assert page.index("noise floor") < page.index("Regressions on the readings")
+    assert "test 13, PAOR" in page and page.count("<figcaption>") == 5
 
 
 def test_compare_reads_the_rows_back(ran, gearheat, rig):

@@ -39,9 +39,9 @@ def bench(
 def docs(
     context: typer.Context,
     out: Path,
-    run: Literal["quick", "all", "none"] = "quick",
+    run: Literal["quick", "all", "none"] = "none",
 ) -> None:
-    """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
+    """Build the documentation as a web site; with --run its code blocks are run and compared with what they print."""
     import gearheat as gh
 
     from ..docs import build

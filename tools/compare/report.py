@@ -15,11 +15,13 @@ from ...model.run.result import Outside
 from ...model.sources import LawInfo, sources
 from ...scenarios.scenario import Scenario
 from ..describe import description as describe
-from ..show.drawing import COLOURS, empty, legend, svg
+from ..show.drawing import COLOURS, empty, hovering, legend, marks_on, svg
 from ..show.notes import unchecked_lines
 from ..show.pages import html_table, page
+from ..show.picture import Picture
 from .errors import GROUPINGS, Channel, Comparison, Row, Rows, Score, channels_of, distinct, errors, numbers, present
-from .results import error_lines, group_lines
+from .opening import opening
+from .results import NOISE, error_lines, group_lines
 
 #: Columns of the table of all readings.
 READING = ("point", "test", "direction", "oil", "n_set_rpm", "T_set_Nm", "T_amb_C")
@@ -48,6 +50,7 @@ def render(
     *,
     curves: Mapping[int, Mapping[str, np.ndarray]],
     outside: Sequence[Outside],
+    machine: Picture | None = None,
 ) -> str:
     """The page as HTML text, the same bytes for the same run. Without a comparison it shows the simulation alone.
 
@@ -59,6 +62,7 @@ def render(
         scores: of statistical rivals
         curves: some tests over time, columns as in `warm_up`
         outside: laws that were used outside their range
+        machine: drawing of the gearbox
     """
     rows, laws = found["rows"], describe.cite_laws(flat)
     parameters = describe.parameters(scenario, flat)
@@ -68,7 +72,8 @@ def render(
         "report.html",
         rig=scenario,
         found=found,
-        compared=None if comparison is None else _describe_errors(rows, comparison, scores),
+        compared=None if comparison is None else _describe_errors(scenario.name, rows, comparison, scores),
+        machine=Markup("") if machine is None else hovering(machine.figure, machine.marks),
         tests=len({row["test"] for row in rows}),
         warm_up=Markup(warm_up(curves, rows)) if curves else "",
         breakdown=_breakdown(rows, [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]),
@@ -91,7 +96,7 @@ def _breakdown(rows: Rows, losses: Sequence[str]) -> Markup:
     return Markup(shares(rows[0], losses) if len(rows) == 1 else breakdown(rows, losses))
 
 
-def _describe_errors(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
+def _describe_errors(rig: str, rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
     """What the page says about measured values."""
     channels = present(rows)
     noise = comparison.noise_floor
@@ -99,12 +104,16 @@ def _describe_errors(rows: Rows, comparison: Comparison, scores: Sequence[Score]
     drawn = [  # two sensors may read one temperature of the model
         c for k, c in enumerate(channels) if not any(np.array_equal(simulated[k], other) for other in simulated[:k])
     ]
+    head, lines = error_lines(comparison, scores)
+    own = 1 + next(k for k, line in enumerate(lines) if line[0] == NOISE)
     return {
+        "opening": opening(rig, comparison),
         "scores": scores,
         "noise": noise,
         "repeated": ", ".join("/".join(str(t) for t in tests) for tests in noise["repeated"]) or "none",
-        "summary": html_table(*error_lines(comparison, scores), ours=0),
-        "parity": Markup(parity(rows, drawn)),
+        "summary": html_table(head, lines[:own], ours=0),
+        "rivals": html_table(head, lines[own:]) if lines[own:] else "",
+        "parity": parity(rows, drawn),
         "residuals": Markup(residuals(rows, channels, noise)),
         "groups": html_table(*group_lines(comparison)),
     }
@@ -138,8 +147,8 @@ def shown_unit(channel: Channel) -> str:
     return "°C" if channel.unit == "K" else channel.unit
 
 
-def parity(rows: Rows, channels: Sequence[Channel]) -> str:
-    """Measured against simulated, one panel a channel, coloured by oil, shaped by direction."""
+def parity(rows: Rows, channels: Sequence[Channel]) -> Markup:
+    """Measured against simulated, one panel a channel, coloured by oil, shaped by direction; points tell tests."""
     figure, panels = empty(4.0 * len(channels), 4.9, 1, len(channels))
     for panel, channel in zip(panels, channels, strict=True):
         x, y = numbers(rows, channel.column), numbers(rows, channel.measured)
@@ -152,7 +161,20 @@ def parity(rows: Rows, channels: Sequence[Channel]) -> str:
         panel.set_xlabel(f"simulated [{shown_unit(channel)}]")
         panel.set_ylabel(f"measured [{shown_unit(channel)}]")
     legend(figure, panels[0])
-    return svg(figure)
+    told: list[tuple[Axes, float, float, str]] = []
+    for panel, channel in zip(panels, channels, strict=True):
+        pairs = zip(rows, numbers(rows, channel.column), numbers(rows, channel.measured), strict=True)
+        told += [(panel, x, y, _point(row, channel, x, y)) for row, x, y in pairs if np.isfinite(x + y)]
+    return hovering(figure, marks_on(figure, told))
+
+
+def _point(row: Row, channel: Channel, simulated: float, measured: float) -> str:
+    """A reading in words: its test, its operating point, simulated and measured."""
+    point = [f"{row[name]:g} {unit}" for name, unit in UNITS.items() if row.get(name) is not None]
+    test = [f"test {row['test']}"] if "test" in row else []
+    where = ", ".join([*test, *([str(row["oil"])] if row.get("oil") else []), *point])
+    unit = shown_unit(channel)
+    return f"{where}\n{channel.label} {simulated:.4g} {unit} simulated, {measured:.4g} {unit} measured"
 
 
 def residuals(rows: Rows, channels: Sequence[Channel], noise: Mapping[str, Any]) -> str:

@@ -15,6 +15,9 @@ from ..show.console import note
 from ..show.display import Answer, Table
 from .errors import GROUPINGS, Comparison, Score, compare as compare_rows, rivals
 
+#: Name of the line below those of the simulation, above those of the rivals.
+NOISE = "noise floor"
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Errors(Answer):
@@ -93,7 +96,7 @@ def error_lines(comparison: Comparison, scores: Sequence[Score]) -> tuple[list[s
 
     body = [line("simulation, all readings", rmse["overall"])]
     body += [line(f"simulation, {grid}", found) for grid, found in rmse.items() if grid != "overall"]
-    body.append(line("noise floor", comparison.noise_floor))
+    body.append(line(NOISE, comparison.noise_floor))
     for score in scores:
         body.append(line(f"{score.name}, in sample", score.in_sample))
         body.append(line(f"{score.name}, left-out tests", score.leave_one_test_out))

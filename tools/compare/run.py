@@ -16,6 +16,7 @@ from ...scenarios.given import RigLike, Settings
 from ...scenarios.measured.readings import ROOM, column_of, drives, sources
 from ...scenarios.measured.study import Measured, load_rig, read_study
 from ...scenarios.scenario import Scenario
+from ..describe.description import show
 from ..export.fmu import write_fmu
 from ..show.columns import rows_text
 from ..show.console import as_json, folder, note, write
@@ -110,7 +111,9 @@ def run(
     head = list(dict.fromkeys(name for row in rows for name in row))
     write(out / "rows.csv", rows_text(head, ([row.get(name) for name in head] for row in rows)))
     write(out / "result.json", as_json(result))
-    write(out / "report.html", render(scenario, flat, result, comparison, scores, curves=curves, outside=outside))
+    machine = show(scenario).drawing()
+    told = render(scenario, flat, result, comparison, scores, curves=curves, outside=outside, machine=machine)
+    write(out / "report.html", told)
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
     heading = f"{scenario.name}: {'errors' if comparison else 'operating point'}"
     return CampaignRun(result, comparison, scores, heading=heading)

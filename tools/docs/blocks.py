@@ -29,6 +29,7 @@ from pathlib import Path
 from typer.core import TyperGroup
 
 from ...scenarios.shipped import RIGS
+from ..show.console import note
 
 PAGES = Path(__file__).with_name("pages")
 FENCE = re.compile(r"^```(\w*) *(.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -201,6 +202,7 @@ def run_pages(program: TyperGroup, all_: bool = False) -> list[str]:
     """Run the blocks of all pages, each in a folder of its own; what is wrong, one text for each problem."""
     found = []
     for page in pages():
+        note(f"running {page.relative_to(PAGES)}")
         with tempfile.TemporaryDirectory() as folder:
             found += Reader(program, Path(folder), all_).problems(page)
     return found

@@ -45,6 +45,7 @@ def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run:
         raise GearheatError('docs: Sphinx is not installed. Run pip install "gearheat[docs]".')
     if run != "none" and (found := run_pages(program, run == "all")):
         raise GearheatError(found)
+    note(f"{len(list(PAGES.rglob('*.md')))} pages and the reference; code blocks are run with --run quick or all")
     build(program, public, folder(out))
     note(f"{out / 'index.html'}")
 
@@ -60,11 +61,13 @@ def build(program: TyperGroup, public: Mapping[str, Any], out: Path) -> None:
 
     with tempfile.TemporaryDirectory() as work:
         source = gather(program, public, Path(work) / "source")
+        note("building with Sphinx")
         static = source / "static"
         static.mkdir()
         shutil.copy(Path(__file__).with_name("narrow.css"), static)
         own = dict.fromkeys(("version", "release"), version("gearheat"))
-        settings = {**TABLES["sphinx"], **own, "html_static_path": [str(static)]}
+        theme = "furo" if find_spec("furo") else "alabaster"
+        settings = {**TABLES["sphinx"], **own, "html_theme": theme, "html_static_path": [str(static)]}
         places = (str(source), None, str(out), str(Path(work) / "trees"), "html")
         try:
             app = Sphinx(*places, confoverrides=settings, status=None, warningiserror=True, exception_on_warning=False)
@@ -83,9 +86,14 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for name, text in (*reference.pages(), *_list_program_pages(program, public)):
-        (place / name).parent.mkdir(parents=True, exist_ok=True)
-        (place / name).write_text(text, encoding="utf-8")
+    for title, found in (
+        ("parts, laws and rigs", reference.pages()),
+        ("commands and modules", _list_program_pages(program, public)),
+    ):
+        note(f"writing {title}")
+        for name, text in found:
+            (place / name).parent.mkdir(parents=True, exist_ok=True)
+            (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
     for path in source.rglob("*.md"):
         path.write_text(fill_blocks(add_captions(path.read_text(encoding="utf-8"))), encoding="utf-8")
@@ -114,8 +122,9 @@ def _list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Itera
         Path("duty.csv").write_text(DUTY, encoding="utf-8")
         answers = {command: _keys_of(program, command) for command in TABLES["asked"]}
     yield "json.md", page("json", answers=answers, schema=schema)
-    yield "api/index.md", page("api", modules=TABLES["modules"])
-    yield "api/gearheat.md", page("public", members=list(_public(public)))
+    members = list(_public(public))
+    yield "api/index.md", page("api", modules=TABLES["modules"], members=members, public=public)
+    yield "api/gearheat.md", page("public", members=members)
     for module in TABLES["modules"]:
         yield f"api/{module}.md", page("module", name=module)
 

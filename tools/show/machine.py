@@ -18,17 +18,36 @@ from .heat_paths import place_names
 from .picture import Picture
 from .train import HALF, Mesh, Shaft, Train, lay_out
 
-#: Inches of a unit of the drawing, width of the list [inch], height of a line [inch].
-UNIT, LIST, LINE = 0.62, 3.3, 0.17
-#: Half the width of a face, of a shaft, of a bearing; how far an end stands out; step from bearing to bearing.
-FACE, THICK, BEARING, OUT, NEXT = 0.3, 0.06, 0.14, 0.75, 0.4
+#: Length of a unit of the drawing [inch].
+UNIT = 0.62
+#: Width of the list [inch].
+LIST = 3.3
+#: Height of a line of the list [inch].
+LINE = 0.17
+#: Half the width of a face.
+FACE = 0.3
+#: Half the width of a shaft.
+THICK = 0.06
+#: Half the width of a bearing.
+BEARING = 0.14
+#: How far a shaft end stands out.
+OUT = 0.75
+#: Step from bearing to bearing.
+NEXT = 0.4
 #: Level of the oil where nothing says more, as a share of the housing.
 LOW = 0.28
 #: Letters of a line of the list.
 LETTERS = 46
 #: Length of a tooth of a bevel gear, as a share of its cone.
 CONE = 0.35
-STEEL, METAL, OIL, EDGE = "#a9bccf", "#5f6b78", "#f2c14e", "#333333"
+#: Colour of gears without a temperature.
+STEEL = "#a9bccf"
+#: Colour of bearings, pins and seals without a temperature.
+METAL = "#5f6b78"
+#: Colour of oil without a temperature.
+OIL = "#f2c14e"
+#: Colour of outlines.
+EDGE = "#333333"
 #: Temperatures at the ends of the colours [K], spread at least so far [K].
 SPREAD = 10.0
 

@@ -32,9 +32,12 @@ LETTERS = 19
 SMALL = 0.12
 #: Sweeps by which the boxes of a column are put in order.
 SWEEPS = 6
-#: Colours by what makes the heat; of what already flows between bodies, and of what makes heat otherwise.
+#: Colours by what makes the heat.
 KINDS = dict(zip(("teeth", "bearing", "seal", "churning", "motor", "clutch"), COLOURS, strict=False))
-FLOWING, OTHER = "#9aa5b1", "#b08968"
+#: Colour of what already flows between bodies.
+FLOWING = "#9aa5b1"
+#: Colour of what makes heat otherwise.
+OTHER = "#b08968"
 
 
 @dataclass

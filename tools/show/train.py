@@ -11,10 +11,14 @@ from ...model.core.connect import Assembly, nets
 from ...model.parts.ports import Flange
 from ...model.parts.shaft import FixedFlange
 
-#: Distance of two meshes on one shaft, and half the width of a set between shafts in line.
-STEP, HALF = 1.5, 0.8
-#: Sum of the radii of the pair with the largest centre distance, and the smallest radius.
-SPREAD, LEAST = 2.2, 0.22
+#: Distance of two meshes on one shaft.
+STEP = 1.5
+#: Half the width of a set between shafts in line.
+HALF = 0.8
+#: Sum of the radii of the pair with the largest centre distance.
+SPREAD = 2.2
+#: The smallest radius.
+LEAST = 0.22
 #: Room beside a set in line, from its middle.
 SIDE = 0.5
 #: From the outermost mesh to the middle of the wall.
