@@ -190,8 +190,8 @@ def test_a_rig_from_a_name_plate(tmp_path: Path) -> None:
     assert gh.steady(mine).to("oil.T", "degC") == pytest.approx(mine.sizes["oil_degC"])
 
 
-#: What commands may know beside `gearheat` itself.
-MAY_KNOW = ("gearheat", "gearheat.model.errors", "gearheat.scenarios.shipped")
+#: What commands may know beside `gearheat` itself; the desk knows no more of it than they do.
+MAY_KNOW = ("gearheat", "gearheat.model.errors", "gearheat.scenarios.shipped", "gearheat.tools.desk")
 #: Rooms of the commands for developers, which are no part of the public interface.
 DEVELOPERS = ("gearheat.tools.bench", "gearheat.tools.docs")
 

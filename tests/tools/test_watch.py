@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.table import Sensor
-from gearheat.tools.watch.lines import as_text, opened
+from gearheat.tools.show.event_lines import as_text, opened
 from gearheat.tools.watch.sources import Files, Source, Stream
 from gearheat.tools.watch.store import Store
 from gearheat.tools.watch.watch import Watch

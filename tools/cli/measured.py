@@ -9,9 +9,8 @@ from typing import Literal
 import gearheat as gh
 
 from ...model.errors import ScenarioError
-from ..show import console
+from ..show import console, event_lines
 from ..show.notes import print_outside, print_unchecked
-from ..watch import lines
 
 #: Rows of the table of contacts for people; programs get all.
 CONTACTS = 19
@@ -126,7 +125,7 @@ def watch(
 ) -> None:
     """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
     console.use_one_thread()
-    with lines.opened(json) as out:
+    with event_lines.opened(json) as out:
         events = gh.watch(
             rig,
             source,

@@ -60,14 +60,17 @@ class Farm:
         return replace(logs[0], name=name, values=values, time=time, stretch=stretch, lines=np.arange(2, len(time) + 2))
 
     def _ask(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> LogDiagnosis:
-        """A third year of the first machine, in which a knob has moved in its last seasons."""
+        logs = [self.third_year(seed, name, size, since)]
+        inputs = Inputs(Request("wind_turbine", quick=True), self.scenario, Card(), None, None, None)
+        return composed(inputs, self.fleet, question(self.fleet, logs), Logs(logs))
+
+    def third_year(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> Log:
+        """That of the first machine, in which a knob has moved in its last seasons."""
         change = np.zeros((ASKED, N, len(self.knobs)))
         if name:
             change[int(since * ASKED) :, :, [k.name for k in self.knobs].index(name)] = size
         parts = [self.log(0, 3.0 + q / 4, seed + q, change[q]) for q in range(ASKED)]
-        logs = self.logs = [self.joined(parts, "asked")]
-        inputs = Inputs(Request("wind_turbine", quick=True), self.scenario, Card(), None, None, None)
-        return composed(inputs, self.fleet, question(self.fleet, logs), Logs(logs))
+        return self.joined(parts, "asked")
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +139,7 @@ def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(far
 
 def test_a_watch_says_of_a_log_what_the_diagnosis_says(farm: Farm, monkeypatch: pytest.MonkeyPatch) -> None:
     told = farm.asked(*WORN)
-    (log,) = farm.logs
+    log = farm.third_year(*WORN)
     judge = Judge(Inputs(Request("wind_turbine"), farm.scenario, Card(), None, None, None))
     monkeypatch.setattr(judge, "log", lambda *said: log)
     monkeypatch.setattr(judge, "known", lambda log: farm.fleet)

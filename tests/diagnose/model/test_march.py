@@ -195,24 +195,3 @@ def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
     found = march(plant, phases, x0, plant.p[None, None, None], np.ones((1, 1)))
     expected = steady(flat, scenario.operating_point)
     assert found.y[0, 0] == pytest.approx([expected[q.name][-1] for q in flat.states], abs=1e-6)
-
-
-def test_functions_of_the_plant_at_many_points(planetary) -> None:
-    plant = planetary[0]
-    w = np.concatenate([plant.flat.starts("state"), plant.flat.starts("algebraic")]) + np.array([[30.0], [60.0]])
-    u, p = np.tile(plant.u, (2, 1)), np.tile(plant.p, (2, 1))
-    u[:, [plant.u_place[g] for g in plant.given]] = [10.0, 295.0, 1500.0]
-    _, J = plant.rates(w, u, p)
-    (by,) = plant.slopes(w, u, p)
-    y, y_w, _ = plant.reading_slopes(w, u, p)
-    assert (J.shape, y.shape) == ((2, plant.nx + plant.nz, w.shape[1]), (2, len(plant.shown)))
-
-    def agree(found: np.ndarray, expected: np.ndarray) -> None:
-        assert found == pytest.approx(expected, rel=1e-4, abs=1e-7 * max(np.abs(expected).max(), 1e-9))
-
-    for j, scale in enumerate(plant.scale):
-        way = np.arange(w.shape[1]) == j
-        agree(J[:, :, j], central(lambda h, way=way: plant.rates(w + h * way, u, p)[0], 1e-5 * scale))
-        agree(y_w[:, :, j], central(lambda h, way=way: plant.readings(w + h * way, u, p)[0], 1e-5 * scale))
-    way = np.arange(len(plant.p)) == plant.place["oil.c_p"]
-    agree(by[:, :, plant.knobs.index("oil.c_p")], central(lambda h: plant.rates(w, u, p + h * way)[0], 1e-2))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ...model.errors import visible
-from ..show.console import file_of, writable
+from .console import file_of, writable
 
 
 @dataclass
