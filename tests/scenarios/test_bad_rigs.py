@@ -19,7 +19,7 @@ FACE = 'b = "42 mm"'
     ("old", "new", "expected"),
     [
         # values
-        (FACE, "b = 42", GEARS + ': b = 42 has no unit. Write "42 m" (expected a unit like m).'),
+        (FACE, "b = 42", GEARS + ': b = 42 has no unit. Write "42 mm" or "42 m" (expected a unit like m).'),
         (FACE, 'b = "42"', GEARS + ': b = "42" has no unit. Write "42 mm" or "42 m" (expected a unit like m).'),
         (FACE, 'b = "42 kg"', GEARS + ': b = "42 kg": unit "kg" does not fit m. Write for example "62 mm".'),
         (FACE, 'b = "42 mn"', GEARS + ': b = "42 mn": unit "mn" does not fit m. Write for example "62 mm".'),

@@ -123,7 +123,7 @@ class TestBadFiles:
         )
         assert problems(tmp_path, "stray = 3\n" + text) == (
             "own.toml [stray]: is no table. Write the values of the entry below [stray].",
-            'own.toml [A 1]: d_m = 62 has no unit. Write "62 m" (expected a unit like m).',
+            'own.toml [A 1]: d_m = 62 has no unit. Write "62 mm" or "62 m" (expected a unit like m).',
             'own.toml [A 1]: no part takes "mu_EHLL". Did you mean "mu_EHL"?',
             "own.toml [A 2]: no source is given for D."
             ' Add source = "..." (a citation, or "assumed: reason") to the table.',
