@@ -11,6 +11,26 @@ from gearheat.scenarios.film_map import COLUMNS
 R, LENGTH, E_EFF = 0.01, 0.02, 226e9
 LOADS, SPEEDS, VISCOSITIES = np.geomspace(100, 1e4, 4), np.geomspace(0.1, 10, 4), np.geomspace(0.01, 0.5, 4)
 
+#: A case of films, whose map is computed.
+CASE = """
+[contact]
+R_x = "10 mm"
+length = "10 mm"
+E_eff = "226 GPa"
+slide_roll = 0.1
+sigma = "0.3 um"
+mu_boundary = 0.12
+source = "assumed: a disc machine"
+
+[oil]
+oil = "ISO VG 220 mineral"
+
+[vary]
+F = "1000..4000 N"
+u_m = "1..4 m/s"
+T = "60..90 degC"
+"""
+
 
 def central(F: float, u_m: float, eta_0: float, radius: float = R) -> float:
     """A film with the similarity of line contacts: over radius, of load and speed over radius, and of viscosity."""

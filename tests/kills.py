@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from film_tables import CASE
 from gearheat.model.files import DAY
 
 #: From Ctrl-C to the end at most, on a machine with other work [s]; 2 s on a quiet one.
@@ -33,23 +34,7 @@ _LOG = "".join(f"{600 * k},{1000 + 400 * (k % 9 > 4)},{3000 + 50 * (k % 7)},{55 
 FILES = {
     "duty.csv": f"time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n{_DUTY}",
     "log.csv": f"time_s,n_hss_rpm,T_hss_Nm,T_sump_C,T_nacelle_C\n{_LOG}",
-    "case.toml": """[contact]
-R_x = "10 mm"
-length = "10 mm"
-E_eff = "226 GPa"
-slide_roll = 0.1
-sigma = "0.3 um"
-mu_boundary = 0.12
-source = "assumed: a disc machine"
-
-[oil]
-oil = "ISO VG 220 mineral"
-
-[vary]
-F = "1000..4000 N"
-u_m = "1..4 m/s"
-T = "60..90 degC"
-""",
+    "case.toml": CASE,
 }
 #: What is disturbed; {files} is the folder of those.
 COMMANDS = {

@@ -8,31 +8,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from film_tables import written
+from film_tables import CASE, written
 from gearheat.model.contact import solve
 from gearheat.scenarios.film_map import read_film_map
 from gearheat.scenarios.load import load
 from gearheat.tools.films import film
 from gearheat.tools.films.case import from_rig
 
-CASE = """
-[contact]
-R_x = "10 mm"
-length = "10 mm"
-E_eff = "226 GPa"
-slide_roll = 0.1
-sigma = "0.3 um"
-mu_boundary = 0.12
-source = "assumed: a disc machine"
-
-[oil]
-oil = "ISO VG 220 mineral"
-
-[vary]
-F = "1000..4000 N"
-u_m = "1..4 m/s"
-T = "60..90 degC"
-"""
 SMALL = ("--grid", "2x2x2", "--nodes", "61")
 
 

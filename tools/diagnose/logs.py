@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.errors import DataError
+from ...model.errors import DataError, Problems
 from ...scenarios.measured.logs import Log, read_log
 from ...scenarios.measured.table import Sensor
 from .answer import channels, compose, findings as f
@@ -52,11 +52,12 @@ class Logs:
 
 @dataclass(frozen=True, eq=False)
 class LogDiagnosis:
-    """What the logs say."""
+    """What the logs say; `spans` are those in question as a campaign."""
 
     found: Found
     decision: Decision
     findings: f.Findings
+    spans: Logged
 
     @property
     def causes(self) -> tuple[str, ...]:
@@ -69,6 +70,26 @@ class LogDiagnosis:
         return known.probability if known else 0.0
 
 
+def read_logs(inputs: Inputs) -> Logs:
+    """All logs of a request.
+
+    Raises:
+        DataError: all problems of the files
+    """
+    request, problems = inputs.request, Problems()
+
+    def read(paths: Sequence[Path]) -> tuple[Log, ...]:
+        found = []
+        for path in paths:
+            with problems:
+                found.append(read_log(path, inputs.scenario, inputs.card))
+        return tuple(found)
+
+    data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
+    problems.check(DataError)
+    return data
+
+
 def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     """What the logs of a request say: whether a machine has changed, and what.
 
@@ -79,20 +100,7 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     Raises:
         DataError: all problems of the logs
     """
-    request, problems = inputs.request, list[str]()
-
-    def read(paths: Sequence[Path]) -> list[Log]:
-        found = []
-        for path in paths:
-            try:
-                found.append(read_log(path, inputs.scenario, inputs.card))
-            except DataError as error:
-                problems.extend(error.problems)
-        return found
-
-    data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
-    if problems:
-        raise DataError(problems)
+    data = read_logs(inputs)
     check(data)
     known = fleet(
         inputs.scenario,
@@ -130,7 +138,7 @@ def judged(
     options = Options(request.alpha, request.seed, request.causes)
     found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)
-    return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs))
+    return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs), problem.spans)
 
 
 def composed(
@@ -142,8 +150,7 @@ def composed(
 ) -> LogDiagnosis:
     """The whole answer; as `judged`."""
     told = judged(inputs, known, asked, logs, progress)
-    found, decision, findings = told.found, told.decision, told.findings
-    spans = problem_of(known, asked, logs.logs).spans
+    found, decision, findings, spans = told.found, told.decision, told.findings, told.spans
     if decision.verdict != "consistent" and not inputs.request.quick:
         held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         findings = findings.model_copy(update={"gain": held})

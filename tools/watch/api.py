@@ -15,7 +15,7 @@ from ...scenarios.measured.sensors import sensors_of
 from ..diagnose.request import Inputs, PlanRequest, Request, read_plan
 from .sources import Files, Source, Stream
 from .store import Store
-from .watch import WINDOW, Watch, identity, read_healthy
+from .watch import WINDOW, Watch, identity
 
 File = str | Path
 #: Where the store notes which events have been taken.
@@ -70,9 +70,11 @@ def watch(
     paths = [tuple(map(Path, logs)) for logs in (reference_logs, sibling_logs)]
     request = Request(rig, card=found.request.card, reference_logs=paths[0], sibling_logs=paths[1], alpha=alpha)
     inputs = Inputs(request, found.scenario, found.card, None, None, None)
-    from .judge import Judge  # what it needs loads slowly
+    from ..diagnose.logs import read_logs  # what it needs loads slowly
+    from .judge import Judge
 
-    judge = Judge(inputs, *read_healthy(inputs))
+    healthy = read_logs(inputs)
+    judge = Judge(inputs, healthy.reference, healthy.siblings)
     store = Store(None if state is None else Path(state), f"{identity(request)} {every}")
     segment = inputs.card.columns.get("segment", "segment")
     own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time)

@@ -1,4 +1,4 @@
-"""Where samples come from: growing files, folders of them, and standard input; `mqtt` has brokers."""
+"""Where samples come from: growing files, folders of them, and standard input."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Row:
     Args:
         machine: name
         cells: column -> what is in it
-        where: file and line, or topic, for people
+        where: file and line, for people
         source, place: how far the source has been read with this row, None where it keeps that itself
         problem: what is wrong with it, which has no cells then
     """
@@ -89,9 +89,13 @@ class Files:
         found = [path for path in self.root.rglob("*") if path.name.endswith(GROWING + WHOLE)]
         return [(_stem(path.relative_to(self.root).parts[0]), path) for path in sorted(found)]
 
+    def _name(self, path: Path) -> str:
+        """Of a file, by which its place is kept."""
+        return path.relative_to(self.root).as_posix() if path != self.root else path.name
+
     def _added(self, machine: str, path: Path) -> Iterator[Row]:
         """Whole lines after the last one that was read."""
-        name = path.relative_to(self.root).as_posix() if path != self.root else path.name
+        name = self._name(path)
         offset, number = self.place(name) or (0, 1)
         with path.open("rb") as file:
             head = file.readline()
@@ -114,7 +118,7 @@ class Files:
         if self._seen.get(path) == (state.st_mtime_ns, state.st_size):
             return
         self._seen[path] = state.st_mtime_ns, state.st_size
-        name = path.relative_to(self.root).as_posix() if path != self.root else path.name
+        name = self._name(path)
         try:
             columns, lines = read_columns(path, lambda header: header)
         except DataError as error:

@@ -13,9 +13,9 @@ import numpy as np
 
 from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
-from ...scenarios.measured.logs import NUMBERS, Log, find_time, parse_number, parse_time, read_log
+from ...scenarios.measured.logs import NUMBERS, find_time, parse_number, parse_time
 from ...scenarios.measured.table import Sensor
-from ..diagnose.request import Inputs, Request
+from ..diagnose.request import Request
 from .sources import Row, Source
 from .store import Cells, Machine, Store
 
@@ -25,26 +25,6 @@ WINDOW = 250
 KEPT = 396 * 86400.0
 #: A time that is so far ahead of the clock is none [s].
 AHEAD = 86400.0
-
-
-def read_healthy(inputs: Inputs) -> tuple[tuple[Log, ...], tuple[Log, ...]]:
-    """The healthy logs of a request: of the one machine that is watched, and one of each of several.
-
-    Raises:
-        DataError: all problems of the files
-    """
-    problems, found = list[str](), []
-    for paths in (inputs.request.reference_logs, inputs.request.sibling_logs):
-        logs = []
-        for path in paths:
-            try:
-                logs.append(read_log(path, inputs.scenario, inputs.card))
-            except DataError as error:
-                problems.extend(error.problems)
-        found.append(tuple(logs))
-    if problems:
-        raise DataError(problems)
-    return found[0], found[1]
 
 
 class Watch:

@@ -16,6 +16,9 @@ from ..model.noise import Term, alike, input_scatter, stacked, summed, terms
 from ..model.observe import Observed, Seen
 from .scales import most_likely
 
+#: Half widths of its prior to which a cause is followed.
+OUT = 2.0
+
 
 @dataclass(frozen=True, order=True)
 class Aside:
@@ -92,10 +95,6 @@ class Noise:
         kept = [t for t in self.terms if t.loose == 0]
         fixed = summed(kept, np.zeros(len(kept)), len(residual))
         return replace(self, scales=most_likely(known + fixed, self.loose, residual, self.scales))
-
-
-#: Half widths of its prior to which a cause is followed.
-OUT = 2.0
 
 
 class Problem:

@@ -122,11 +122,13 @@ class Table:
         self.families = np.array([t.family for t in linear.terms])
         self.kinds = np.array([kind(t.name) if t.formula else "" for t in linear.terms])
         gross = np.array([t.aside is not None for t in own])
-        #: Sizes of the same widths: their numbers, the widths, and the prior's mass inside the bounds.
+        #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
+        #: bounds can add to a log Bayes factor.
         self.groups = []
         for k in (np.flatnonzero(group) for group in (~gross, gross) if group.any()):
             widths = own[int(k[0])].widths
-            self.groups.append((k, widths, prior_mass(self.low[k], self.high[k], widths)))
+            prior = prior_mass(self.low[k], self.high[k], widths)
+            self.groups.append((k, widths, prior, -np.log(prior.min(axis=0))))
 
     def named(self, members: Sequence[int]) -> list[str]:
         """The causes of a set."""
@@ -179,12 +181,10 @@ class Whitened:
         tie = turned.T @ self.W
         s, q = self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12)
         logs, at = np.full(len(s), -np.inf), np.zeros(len(s))
-        for own, tried, prior in self.table.groups:
-            high = 0.5 * s[own] ** 2 / q[own] - np.log(prior.min(axis=0))
-            able = high > least[own]
-            k = own[able]
-            each, inside = by_width(s[k], q[k], self.table.low[k], self.table.high[k], tried)
-            if len(k):
+        for own, tried, prior, most in self.table.groups:
+            able = 0.5 * s[own] ** 2 / q[own] + most > least[own]
+            if len(k := own[able]):
+                each, inside = by_width(s[k], q[k], self.table.low[k], self.table.high[k], tried)
                 logs[k], at[k] = averaged(each, inside, prior[:, able]), tried[np.argmax(each, axis=0)]
         return logs, at
 
