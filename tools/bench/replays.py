@@ -30,6 +30,12 @@ def measure() -> dict[str, Any]:
         made = campaign(asked["campaign"], RIGS / asked["campaign"], folder)
         given = {"rig": made.adapter.rig, "card": made.card}
         years = [_replay(name, paths, given, Path(folder)) for name, paths in made.cases.items()]
+    return summed(years)
+
+
+def summed(years: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What years say together: alarms, false ones by years of samples, cost."""
+    asked = TABLES["watch"]
     healthy = [year for year in years if year["case"] not in asked["changed"]]
     seconds, samples = (sum(year[key] for year in years) for key in ("s", "samples"))
     worst = max(years, key=lambda year: year["last_s"])
