@@ -13,7 +13,10 @@ from ..model.noise import Term
 from . import screen
 from .fit import Fit
 from .prior import Prior
-from .problem import Problem
+from .problem import Aside, Problem
+
+#: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
+Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +70,7 @@ class Hypothesis:
         return next(a.formula.form.name for a in self.fit.look.acting if a.id == cause)
 
 
-def with_forms(hypotheses: Mapping[tuple[object, ...], Hypothesis]) -> list[Hypothesis]:
+def with_forms(hypotheses: Mapping[Key, Hypothesis]) -> list[Hypothesis]:
     """Hypotheses of any forms; forms that were not fitted count with the best of those that differ in forms alone."""
     alike: dict[tuple[object, ...], list[Hypothesis]] = {}
     for key, h in hypotheses.items():

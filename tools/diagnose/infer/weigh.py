@@ -20,7 +20,7 @@ from . import screen, sets
 from .draws import correction
 from .evidence import WIDTHS, White
 from .fit import Fit, Start, bounds, fitted, started
-from .found import Extra, Found, Hypothesis, with_forms
+from .found import Extra, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
 from .terms import ERRORS, Term, gross, remainders, sizes, spreads
@@ -47,15 +47,13 @@ QUICK = 3
 FIRST = 2.0
 
 Progress = Callable[[str, float], None]
-#: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
-_Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 
 @dataclass(frozen=True, eq=False)
 class _Combination:
     """Sets of terms with the same forms, scatters and gross readings, and the likeliest of them."""
 
-    key: _Key
+    key: Key
     best: sets.TermSet
     log: float
 
@@ -116,8 +114,8 @@ class Weighing:
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
-        self.hypotheses: dict[_Key, Hypothesis] = {}
-        self.exchanged = set[_Key]()
+        self.hypotheses: dict[Key, Hypothesis] = {}
+        self.exchanged = set[Key]()
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
@@ -225,7 +223,7 @@ class Weighing:
         near: Fit,
         problem: Problem,
         start: Start,
-        key: _Key,
+        key: Key,
         forms: Mapping[str, Mapping[str, float]],
         extras: tuple[Extra, ...] = (),
     ) -> None:
@@ -288,13 +286,13 @@ class Weighing:
 
     def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
         """Sets put together by their forms and scatters, the likeliest first."""
-        members: dict[_Key, list[sets.TermSet]] = {}
+        members: dict[Key, list[sets.TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
         each = [_Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()]
         return sorted(each, key=lambda c: -c.log)
 
-    def _key(self, s: sets.TermSet) -> _Key:
+    def _key(self, s: sets.TermSet) -> Key:
         terms = self.linear.terms
         forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
         aside = self.whole.aside | _aside(terms, s)
@@ -333,7 +331,7 @@ class Weighing:
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
 
-    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
+    def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
