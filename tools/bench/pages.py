@@ -27,8 +27,12 @@ from .harness import TABLES, timed
 
 #: Head of the table of `rows_of`.
 HEAD = ("rig", "page [kB]", "module [kB]", "first numbers [ms]", "a drag [ms]", "steady states, warm-ups: differ by")
-#: Operating points and warm-ups that are compared, and drags that are timed.
-POINTS, WARMUPS, DRAGS = 200, 10, 50
+#: Operating points that are compared.
+POINTS = 200
+#: Warm-ups that are compared.
+WARMUPS = 10
+#: Drags that are timed.
+DRAGS = 50
 #: What is smaller is compared with this, in its unit.
 SMALL = 1e-6
 #: Times of a warm-up [s].
@@ -180,5 +184,6 @@ class Module:
         for field in self.about["fields"]:
             if field["group"] == "operating point":
                 place = [q["name"] for q in self.about["inputs"]].index(field["name"])
-                u[:, place] = random.uniform(*field["ends"], n)
+                low, high = field["ends"]
+                u[:, place] = random.uniform(low, high, n)
         return u
