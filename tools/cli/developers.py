@@ -24,12 +24,14 @@ def bench(
     uncertainty: bool = False,
     contact: bool = False,
     scale: bool = False,
+    watch: bool = False,
     draws: int = 10_000,
     json: str | None = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
-    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty, "scale": scale}
-    if contact:
+    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
+    asked |= {"scale": scale, "watch": watch}
+    if contact or watch:
         console.use_one_thread()
     from ..bench import bench
 

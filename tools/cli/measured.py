@@ -121,6 +121,8 @@ def watch(
     every: int = 250,
     once: bool = False,
     alpha: float = 0.05,
+    page: Path | None = None,
+    publish: str = "",
     json: str | None = None,
 ) -> None:
     """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
@@ -136,6 +138,8 @@ def watch(
             every=every,
             once=once,
             alpha=alpha,
+            page=page,
+            publish=publish,
             after=out.last,
         )
         for event in events:
