@@ -279,8 +279,14 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--stages", "bevel,worm"), "shafts turn by a right angle once"),
         (("--air-speed", "-1 m/s"), "expected 0 m/s or more"),
         (("--stages", "worm"), "expected 7 to 60"),
-        (("--stages", "planetary,helical"), "planetary stages come last here, and none with a worm. Give --stages helical,p"),
-        (("--stages", "planetary,worm"), "planetary stages come last here, and none with a worm. Give --stages helical,w"),
+        (
+            ("--stages", "planetary,helical"),
+            "planetary stages come last here, and none with a worm. Give --stages helical,p",
+        ),
+        (
+            ("--stages", "planetary,worm"),
+            "planetary stages come last here, and none with a worm. Give --stages helical,w",
+        ),
         (("--speed", "0 rpm"), "must be above 0"),
         (("--power", "22"), '--power = "22" has no unit. Write "22 kW" or "22 W"'),
         (("--power", "2,2 kW"), 'has a decimal comma. Write "2.2 kW"'),
@@ -327,7 +333,16 @@ def test_what_a_refusal_advises_works(gearheat, tmp_path):
 
 @pytest.mark.parametrize(
     ("stages", "ratio"),
-    [("worm", 100), ("worm", 3), ("planetary", 20), ("planetary,planetary", 500), ("spur", 90), ("helical,worm", 2000), ("bevel", 6), ("bevel", 200)],
+    [
+        ("worm", 100),
+        ("worm", 3),
+        ("planetary", 20),
+        ("planetary,planetary", 500),
+        ("spur", 90),
+        ("helical,worm", 2000),
+        ("bevel", 6),
+        ("bevel", 200),
+    ],
 )
 def test_the_stages_that_a_refusal_names_go(stages, ratio):
     plate = 2000.0, 1450 * math.pi / 30

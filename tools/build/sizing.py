@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -204,16 +204,7 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
     problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
-    if "bevel" in kinds[1:]:
-        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
-        problems.append(f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}.")
-    if LAST in kinds[:-1]:
-        problems.append(f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}.")
-    if LAST in kinds and "bevel" in kinds:
-        problems.append(f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical.")
-    if IN_LINE in kinds and set(kinds[kinds.index(IN_LINE) :]) != {IN_LINE}:
-        last = ",".join(sorted(kinds, key=lambda kind: kind == IN_LINE)) if LAST not in kinds else f"helical,{LAST}"
-        problems.append(f"{IN_LINE} stages come last here, and none with a {LAST}. Give --stages {last}.")
+    problems += _misplaced(kinds)
     if not (power > 0 and speed > 0):
         problems.append('power and speed must be above 0. Give for example --power "7.5 kW" --speed "1450 rpm".')
     if not 0 < ratio < math.inf:
@@ -244,6 +235,20 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         )
     if problems:
         raise ScenarioError(problems)
+
+
+def _misplaced(kinds: Sequence[str]) -> Iterator[str]:
+    """Stages that cannot stand where they are."""
+    if "bevel" in kinds[1:]:
+        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
+        yield f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}."
+    if LAST in kinds[:-1]:
+        yield f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}."
+    if LAST in kinds and "bevel" in kinds:
+        yield f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical."
+    if IN_LINE in kinds and set(kinds[kinds.index(IN_LINE) :]) != {IN_LINE}:
+        last = ",".join(sorted(kinds, key=lambda kind: kind == IN_LINE)) if LAST not in kinds else f"helical,{LAST}"
+        yield f"{IN_LINE} stages come last here, and none with a {LAST}. Give --stages {last}."
 
 
 def _other_stages(kinds: Sequence[str], ratio: float) -> str:
