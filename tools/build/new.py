@@ -65,7 +65,8 @@ def new(
 
     Args:
         name: of the rig
-        stages: from the input, such as "helical,helical"; bevel first, worm last, planetary alone
+        stages: from the input, such as "helical,helical"; bevel first, worm last, planetary
+            ones behind all others
         ratio: speed of the input over that of the output
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"

@@ -35,7 +35,7 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
         if len(kinds) > 1:
             low, high = (end * fast / 100 for end, fast in zip((low, high), known[str(len(kinds) - 1)], strict=True))
     else:
-        low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
+        low, high = known.get(kinds[0], known)[str(len(kinds))]
     return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
 
 

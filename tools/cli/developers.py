@@ -25,13 +25,14 @@ def bench(
     contact: bool = False,
     scale: bool = False,
     watch: bool = False,
+    page: bool = False,
     draws: int = 10_000,
     json: str | None = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
-    asked |= {"scale": scale, "watch": watch}
-    if contact or watch:
+    asked |= {"scale": scale, "watch": watch, "page": page}
+    if contact or watch or page:
         console.use_one_thread()
     from ..bench import bench
 
