@@ -39,6 +39,13 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
     return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
 
 
+def no_load(stages: str | Sequence[str], kW: float) -> tuple[float, float]:
+    """Shares of the loss [%] that the page's units of such stages and power have without load."""
+    last, known = (stages.split(",") if isinstance(stages, str) else stages)[-1], MACHINES["no_load"]
+    low, high = known.get(last, known["gears"])
+    return low, high if kW >= 1 else high + known["small"]
+
+
 def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
     """What a user should know about a unit, and what its largest loss asks for where it is hot or lossy.
 
