@@ -2,14 +2,26 @@
 
 import csv
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from browser import CHROMIUM, Browser
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.docs import reference
 from gearheat.tools.docs.blocks import PAGES
+
+#: Pages that are opened at three widths where a browser is.
+SHOWN = (
+    "index",
+    "tutorials/own_gearbox",
+    "theory/laws",
+    "generated/commands",
+    "generated/parts/PlanetarySet",
+    "howto/fmu",
+)
 
 
 def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
@@ -30,6 +42,15 @@ def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path)
     for page in (tmp_path / "site").rglob("*.html"):
         text = page.read_text(encoding="utf-8")
         assert 'name="viewport"' in text and "/narrow.css" in text, f"{page.name} may be wider than its screen"
+
+    for width in (360, 800, 1400) if CHROMIUM and find_spec("websockets") else ():
+        with Browser(tmp_path / f"profile{width}") as browser:
+            size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+            browser.call("Emulation.setDeviceMetricsOverride", **size)
+            for name in SHOWN:
+                browser.open((tmp_path / "site" / f"{name}.html").as_uri())
+                browser.wait(f"document.readyState === 'complete' && location.href.endsWith('{name}.html')")
+                assert browser.js("document.documentElement.scrollWidth") <= width, f"{name} runs over {width} px"
 
 
 def test_a_docstring_becomes_a_formula_and_a_list() -> None:
