@@ -56,7 +56,7 @@ class Answer:
         return self.err.split("error: ")[1:]
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def gearheat():
     """Run a command of the program in this process."""
 

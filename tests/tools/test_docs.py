@@ -24,33 +24,44 @@ SHOWN = (
 )
 
 
-def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def site(gearheat, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """Folder of the documentation, and what is told while it is built."""
     pytest.importorskip("myst_parser")
-    answer = gearheat("docs", "-o", tmp_path / "site")
+    folder = tmp_path_factory.mktemp("docs") / "site"
+    answer = gearheat("docs", "-o", folder)
     assert answer.code == 0, answer.err
-    pages = {page.stem for page in (tmp_path / "site" / "generated" / "parts").glob("*.html")}
+    return folder, answer.err
+
+
+def test_the_site_has_a_page_for_every_part(site: tuple[Path, str]) -> None:
+    folder, told = site
+    pages = {page.stem for page in (folder / "generated" / "parts").glob("*.html")}
     assert pages >= set(PARTS)
-    commands = (tmp_path / "site" / "generated" / "commands.html").read_text(encoding="utf-8")
+    commands = (folder / "generated" / "commands.html").read_text(encoding="utf-8")
     assert "--power-flow" in commands
-    tutorial = (tmp_path / "site" / "tutorials" / "own_gearbox.html").read_text(encoding="utf-8")
+    tutorial = (folder / "tutorials" / "own_gearbox.html").read_text(encoding="utf-8")
     assert '<span class="caption-text">card.toml</span>' in tutorial
-    assert "building with Sphinx" in answer.err and "--run quick" in answer.err
-    laws = (tmp_path / "site" / "theory" / "laws.html").read_text(encoding="utf-8")
+    assert "building with Sphinx" in told and "--run quick" in told
+    laws = (folder / "theory" / "laws.html").read_text(encoding="utf-8")
     assert laws.count("<math") > 50 and "mathjax" not in laws.lower()
-    python = (tmp_path / "site" / "generated" / "api" / "index.html").read_text(encoding="utf-8")
+    python = (folder / "generated" / "api" / "index.html").read_text(encoding="utf-8")
     assert "steady" in python and "diagnose" in python
-    for page in (tmp_path / "site").rglob("*.html"):
+    for page in folder.rglob("*.html"):
         text = page.read_text(encoding="utf-8")
         assert 'name="viewport"' in text and "/narrow.css" in text, f"{page.name} may be wider than its screen"
 
-    for width in (360, 800, 1400) if CHROMIUM and find_spec("websockets") else ():
-        with Browser(tmp_path / f"profile{width}") as browser:
-            size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
-            browser.call("Emulation.setDeviceMetricsOverride", **size)
-            for name in SHOWN:
-                browser.open((tmp_path / "site" / f"{name}.html").as_uri())
-                browser.wait(f"document.readyState === 'complete' && location.href.endsWith('{name}.html')")
-                assert browser.js("document.documentElement.scrollWidth") <= width, f"{name} runs over {width} px"
+
+@pytest.mark.skipif(not (CHROMIUM and find_spec("websockets")), reason="no browser")
+@pytest.mark.parametrize("width", [360, 800, 1400])
+def test_pages_stay_within_their_screens(site: tuple[Path, str], width: int, tmp_path: Path) -> None:
+    with Browser(tmp_path) as browser:
+        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        browser.call("Emulation.setDeviceMetricsOverride", **size)
+        for name in SHOWN:
+            browser.open((site[0] / f"{name}.html").as_uri())
+            browser.wait(f"document.readyState === 'complete' && location.href.endsWith('{name}.html')")
+            assert browser.js("document.documentElement.scrollWidth") <= width, name
 
 
 def test_a_docstring_becomes_a_formula_and_a_list() -> None:
