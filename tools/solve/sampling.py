@@ -22,6 +22,7 @@ from ...model.machines.roles import Roles
 from ...model.units import from_si, show_unit, to_si
 from ...scenarios.nuisances import nuisances
 from ...scenarios.scenario import Scenario
+from ...scenarios.values import in_range
 from .steady import leading_outputs
 
 #: Rows of the largest sweep that is not taken for a slip of the keyboard.
@@ -127,8 +128,8 @@ def _axis(w: Written, quantity: Quantity) -> Axis:
             raise ScenarioError(f"{where}: the deviation {w.second} is not above 0. Give a larger one.")
     elif not second > first:
         raise ScenarioError(f"{where}: {w.first} is not below {w.second}. Write LOW..HIGH.")
-    ends = (first,) if w.kind == "normal" else (first, second)
-    Problems(f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None).check()
+    for text in (w.first,) if w.kind == "normal" else (w.first, w.second):
+        in_range("--vary ", text, quantity)
     return Axis(w.name, w.kind, first, second)
 
 
@@ -181,6 +182,28 @@ def lay_grid(axes: Sequence[Axis], text: str) -> np.ndarray:
 def _check(rows: int, option: str) -> None:
     if not 1 <= rows <= MOST_ROWS:
         raise ScenarioError(f"{option}: {rows} rows. Give at least 1 and at most {MOST_ROWS}.")
+
+
+def check_rows(axes: Sequence[Axis], values: np.ndarray, known: Mapping[str, Quantity]) -> None:
+    """Refuse rows with values that cannot be: the tail of a normal distribution may lie beyond a bound.
+
+    Args:
+        axes: what is varied
+        values: of the rows in SI (rows, axes)
+        known: the quantity of every name
+
+    Raises:
+        ScenarioError: a value is out of range or not whole
+    """
+    problems = Problems()
+    for axis, column in zip(axes, values.T, strict=True):
+        quantity = known[axis.name]
+        ends = (float(column.min()), float(column.max()))
+        if (problem := next(filter(None, map(quantity.problem, ends)), None)) is not None:
+            problems.append(f"--vary: {problem} Some rows lie there: vary it less.")
+        elif quantity.whole and (column != np.round(column)).any():
+            problems.append(f"--vary: {axis.name} must be whole in all rows. Give a --grid of whole steps.")
+    problems.check()
 
 
 def describe_axis(axis: Axis, quantity: Quantity) -> dict[str, object]:
