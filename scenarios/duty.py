@@ -95,7 +95,9 @@ def _values(
                 column[k] = _in_range(quantity, offset + slope * number(cell))
             except ValueError as error:
                 problems.append(f'{name} line {lines[k]}: {quantity.name} = "{cell}" {error}.')
-    for k in {int(np.nanargmin(column)), int(np.nanargmax(column))} if np.isfinite(column).any() else ():
+    if problems or not np.isfinite(column).any():
+        return column
+    for k in {int(column.argmin()), int(column.argmax())}:
         with problems:
             check_range(f"{name} line {lines[k]}: {quantity.name}", cells[k], float(column[k]), quantity)
     return column

@@ -264,7 +264,7 @@ class _Loader:
         self.problems += [
             f"{where}: {path} follows from what [drive] says is given. Take it out."
             for path in written
-            if path.startswith(ends) and path not in given
+            if given and path in self.settable and path.startswith(ends) and {*given} <= {*written} - {path}
         ]
         return point
 

@@ -27,6 +27,7 @@ def misnamed(
         name: of the table
     """
     usual = {i.column for i in scenario.instruments or default_instruments(scenario)} | {*CONTEXT}
+    header = [*header, *(split_unit(column)[0] for column in header)]
     for key, column in card.columns.items():
         if column not in header and column not in usual:
             yield f'{card.name} columns.{key}: {name} has no column "{column}".{suggestion(column, header)}'

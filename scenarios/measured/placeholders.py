@@ -17,8 +17,10 @@ WARM = 10.0
 LEAST = 4
 #: A given value is alone where it is this many times the next,
 ALONE = 3.0
-#: and where so many rows, at most this share of all, have such a one.
-ROWS, SHARE = 20, 0.05
+#: in a table of at least so many rows,
+ROWS = 20
+#: and at most in this share of them.
+SHARE = 0.05
 
 
 def placeholders(

@@ -171,11 +171,12 @@ class _Reader:
             numbers = known[name] if si else cells.numbers(name) if kind != "text" else np.full(cells.n, np.nan)
             self.problems += [
                 f"{cells.table.place(row)}: {self.context[name]} is out of range. The {doc} must be from {low:g} to"
-                f" {high:g} {unit}".rstrip() + "."
+                f" {high:g} {unit}".rstrip()
+                + "."
                 for row in np.flatnonzero((numbers < ends[0]) | (numbers > ends[1]))
             ]
         self.problems += [
-            f'{cells.table.place(row)}: {self.context["date"]} = "{day}" is no day of a calendar. Write it as 2014-03-05.'
+            f'{cells.table.place(row)}: {self.context["date"]} = "{day}" is no day. Write it as 2014-03-05.'
             for row, day in enumerate(cells.texts("date"))
             if _ISO.fullmatch(day) and not _is_day(day)
         ]

@@ -63,6 +63,7 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         "contact": (contact.measure, _print_contact),
         "scale": (scale.measure, _print_scale),
     }
+    load(rig)  # a rig that is none is told before other programs are started with it
     measure, show = measures[what]
     found = {"schema": "gearheat.bench/1", **measure()}
     answer(found, json, lambda: show(found))

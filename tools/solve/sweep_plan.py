@@ -230,7 +230,8 @@ def _job(request: Request, scenario: Scenario, flat: FlatModel, varied: tuple[st
         duration = to_si(request.duration, "s", name="--duration")
         if not 0 < duration <= LATEST:
             raise ScenarioError(
-                f"--duration {request.duration} is not above 0 and below {LATEST / YEAR:g} years. Give a time such as 330 min."
+                f"--duration {request.duration} is not above 0 and below {LATEST / YEAR:g} years. Give a time such as"
+                " 330 min."
             )
         schedule = Schedule(np.array([0.0, duration]), {})
     start: dict[str, float | str] = {**first_temperatures(scenario, flat, schedule)}
