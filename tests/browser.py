@@ -5,16 +5,20 @@ from __future__ import annotations
 import base64
 import itertools
 import json
+import os
 import re
 import shutil
 import subprocess
 import time
+from io import BytesIO
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 from urllib.request import urlopen
 
 import pytest
+from gearheat.tools.docs.blocks import PAGES
+from PIL import Image
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), "")
 
@@ -88,6 +92,10 @@ class Browser:
             ' field.files = held.files; field.dispatchEvent(new Event("change", { bubbles: true })); })()'
         )
 
-    def picture(self, path: Path) -> None:
-        """What is seen, as a PNG file."""
-        path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
+    def show(self, name: str) -> None:
+        """What is seen, as a picture of the documentation, where the pictures are written anew."""
+        if os.environ.get("SNAPSHOTS") != "write":
+            return
+        time.sleep(1.0)
+        image = Image.open(BytesIO(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])))
+        image.quantize(64).save(PAGES / "howto" / name, optimize=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate
 from typing import Any
@@ -43,6 +43,7 @@ def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
     aliased = _Alias(alias)
     lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
     rows = [replace(r, lhs=lhs, rhs=rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
+    unknowns = _without_idle(assembly, rows, unknowns)
     check_symbols(rows, unknowns, assembly.parts)
     typical = _typical(assembly, unknowns)
     reduced = reduce(assembly, rows, unknowns, typical)
@@ -82,6 +83,14 @@ def _nets(assembly: Assembly) -> tuple[list[Equation], list[Unknown], list[tuple
             ]
             rows.append(Balance.of(f"sum of {name} at {first.name}", (port.symbols[name] for port in net)))
     return rows, unknowns, alias
+
+
+def _without_idle(assembly: Assembly, rows: Sequence[Equation], unknowns: Sequence[Unknown]) -> list[Unknown]:
+    """The unknowns without what ports bring that may stay open, do so, and are read under no choice of their part."""
+    ports = [net[0] for net in nets(assembly) if len(net) == 1 and not net[0].needed and not type(net[0]).flows()]
+    open_ends = {f"{port.name}.{name}" for port in ports for name in type(port).potentials()}
+    read = {s.element_hash() for s in ca.symvar(column([side for r in rows for side in (r.lhs, r.rhs)]))}
+    return [u for u in unknowns if u.name not in open_ends or u.symbol.element_hash() in read]
 
 
 def _typical(assembly: Assembly, unknowns: list[Unknown]) -> dict[int, float]:

@@ -28,9 +28,16 @@ ENERGY_BY_TOLERANCE = 100.0
 LEFT = 1e-6
 
 
+#: How far beyond the end of its range a law is only noted, over that end, or over the range where that is less.
+NOTED = 0.2
+
+
 @dataclass(frozen=True)
 class Outside:
-    """A law used outside its range: where, which argument, the range and the values met (SI), and what reigns there."""
+    """A law used outside its range: where, which argument, the range and the values met (SI), and what reigns there.
+
+    `last` is the last row at which it is.
+    """
 
     component: str
     law: str
@@ -40,6 +47,14 @@ class Outside:
     lowest: float
     highest: float
     regime: str = ""
+    last: int = 0
+
+    @property
+    def far(self) -> bool:
+        """Whether values lie far from the range."""
+        beyond = ((self.low, self.low - self.lowest), (self.high, self.highest - self.high))
+        width = self.high - self.low
+        return any(over > NOTED * (min(abs(end), width) or width) for end, over in beyond)
 
 
 @dataclass(frozen=True)

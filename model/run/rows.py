@@ -112,11 +112,13 @@ def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outsi
         key = (check.component, check.law.name, check.argument)
         if (other := found.get(key)) is not None:
             lowest, highest = min(lowest, other.lowest), max(highest, other.highest)
+        beyond = np.maximum(check.low - values, values - check.high)
+        last = max(int(np.nonzero(beyond > slack)[-1].max()), other.last if other else 0)
         regime = check.law.regimes.get(check.argument, "")
         if regime:
-            worst = int(np.argmax(np.maximum(check.low - values, values - check.high)))
+            worst = int(np.argmax(beyond))
             regime = regime.format(**words(flat, check.component, evaluated["y"][:, worst], digits=3))
-        found[key] = Outside(*key, check.low, check.high, lowest, highest, regime)
+        found[key] = Outside(*key, check.low, check.high, lowest, highest, regime, last)
     return tuple(found.values())
 
 

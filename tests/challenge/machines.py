@@ -19,8 +19,9 @@ from typing import Any
 
 import gearheat
 import numpy as np
-from gearheat.model.errors import ScenarioError
+from gearheat.model.errors import GearheatError, ScenarioError
 from gearheat.model.machines.roles import Roles
+from gearheat.model.run.steady import steady_table
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
@@ -131,32 +132,37 @@ class Machine:
             raise ArithmeticError("too cold")
 
     def _loss(self) -> float:
-        state = self._state(self.points[0], {})
-        value = abs(state["input.w"] * state["input.tau"]) - abs(state["output.w"] * state["output.tau"])
-        return float(max(value, 1.0))
+        state = self._states({}, self.points[:1])
+        powers = [np.abs(state[f"{end}.w"] * state[f"{end}.tau"]) for end in ("input", "output")]
+        return float(max(powers[0][0] - powers[1][0], 1.0))
 
-    def _state(self, point: tuple[float, float, float], changed: Change) -> Mapping[str, float]:
-        """Everything at a point; raises `ArithmeticError` where the machine cannot be run."""
-        n, load_, room = point
-        given = {"input.w": n * self.nominal.value("input.w"), "output.load": load_ * self.nominal.value("output.load")}
-        course = _course(point)
-        true = {
-            name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ course))
-            for name, (level, slopes) in self.unequal.items()
-        }
-        state = self.nominal.at(given | dict(changed) | true | {"room.T": room + 273.15})
-        if state is None or not state["oil.T"] < HOT + 273.15:
+    def _states(self, changed: Change, points: Sequence[tuple[float, float, float]]) -> Mapping[str, np.ndarray]:
+        """Everything (points,); raises `ArithmeticError` where the machine cannot be run."""
+        known = {n: v for n, v in self.nominal.scenario.operating_point.items() if n in self.nominal.flat.index}
+        rows = []
+        for n, load_, room in points:
+            given = {"input.w": n * self.nominal.value("input.w"), "room.T": room + 273.15}
+            course = _course((n, load_, room))
+            true = {
+                name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ course))
+                for name, (level, slopes) in self.unequal.items()
+            }
+            given["output.load"] = load_ * self.nominal.value("output.load")
+            rows.append(known | given | dict(changed) | true)
+        try:
+            found = steady_table(self.nominal.flat, rows).columns
+        except GearheatError as error:
+            raise ArithmeticError("no steady state") from error
+        if not (found["oil.T"] < HOT + 273.15).all():
             raise ArithmeticError("too hot")
-        return state
+        return found
 
-    def read(self, changed: Change, errors: Change) -> np.ndarray:
+    def read(
+        self, changed: Change, errors: Change, points: Sequence[tuple[float, float, float]] | None = None
+    ) -> np.ndarray:
         """Readings without noise (points, sensors)."""
-        return np.array([self._shown(changed, point, errors) for point in self.points])
-
-    def _shown(self, changed: Change, point: tuple[float, float, float], errors: Change) -> np.ndarray:
-        """Readings at a point without noise (sensors,)."""
-        state = self._state(point, changed)
-        true = np.array([state[s.reads] for s in self.sensors])
+        found = self._states(changed, self.points if points is None else points)
+        true = np.array([found[s.reads] for s in self.sensors]).T
         scale = np.where([s.kind == "torque" for s in self.sensors], true, 1.0)
         return np.asarray(true + scale * np.array([errors.get(s.name, 0.0) for s in self.sensors]))
 
@@ -174,7 +180,7 @@ class Machine:
         known += [CURVED * course * factor for factor in factors for course in courses]
         offsets = np.array([s.offset_sd for s in self.sensors]) / sd
         known += [np.tile(offsets * (np.arange(len(sd)) == k), len(self.sound)) for k in range(len(sd))]
-        other = np.array([self._shown({}, (n, load_, room + SMALL), {}) for n, load_, room in self.points])
+        other = self.read({}, {}, [(n, load_, room + SMALL) for n, load_, room in self.points])
         known += [ANY / SMALL * column for column in block_diag(*(other - self.sound) / sd)]
         whole = np.array(known).T
         return np.asarray(np.linalg.cholesky(np.eye(len(whole)) + whole @ whole.T))

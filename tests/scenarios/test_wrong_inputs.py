@@ -1,4 +1,4 @@
-"""Wrong inputs by kinds, each refused by the reader that commands use: with what was found or what to do, no traceback."""
+"""Wrong inputs by kinds, each refused by the reader that commands use, with what was found or what to do."""
 
 import tomllib
 from pathlib import Path

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 
@@ -144,6 +145,11 @@ def test_simulate_and_design_tell_which_law_is_outside_its_range(gearheat, tmp_p
     duty.write_text("time [s],room.T [degC]\n0,-25\n600,-25\n", encoding="utf-8")
     out = gearheat("simulate", "helical_two_stage", "--duty", duty, "-o", tmp_path / "run.csv").out
     assert "outside its range: oil: kinematic_viscosity, T - T_pour = -7 to " in out
+    duty.write_text("time [s],room.T [degC]\n0,-25\n14400,-25\n", encoding="utf-8")
+    out = gearheat("simulate", "helical_two_stage", "--duty", duty, "-o", tmp_path / "warm.csv").out
+    assert re.search(r"laws outside their range: \d far from it \(warning\), \d near it or early \(note\), \d at", out)
+    assert re.search(r"warning, outside its range: input_bearing_a: starvation, s = \S+ to \S+ \(", out)
+    assert re.search(r"note, outside its range: oil: kinematic_viscosity, T - T_pour = -7 to \S+, until \d+ s \(", out)
     made = ("--free", "cooling.A", "--target", "oil.T=0 degC", "--set", "room.T=-40 degC")
     out = gearheat("design", "helical_two_stage", *made, "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO").out
     assert out.count("outside its range: input_bearing_a: starvation") == 2

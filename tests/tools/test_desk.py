@@ -1,5 +1,6 @@
 """The desk: its sheets in a browser, and nothing for those without its token; guesses of a table's columns."""
 
+import json
 import os
 import re
 import subprocess
@@ -25,6 +26,14 @@ SLIDE = """(() => {
   const slider = page.querySelector('[id="f-carrier.tau"]').parentElement.querySelector("[type=range]");
   slider.value = slider.min;
   slider.dispatchEvent(new Event("input"));
+})()"""
+#: Name of the assumed value that matters most.
+FIRST_ASSUMED = "document.querySelector('.assumed tbody td')?.innerText"
+#: Says where the value that is changed is from.
+SOURCE = """(() => {
+  const field = document.querySelector(".source input");
+  field.value = "drawing 4711";
+  field.dispatchEvent(new Event("input", { bubbles: true }));
 })()"""
 TABLE = """Messpunkt;Drehzahl [1/min];Abtrieb [Nm];Antrieb [Nm];Ölsumpf [°C];Gehäuse [°C];Halle [°C];Bemerkung
 1;600;150;12,4;22,24;22,49;19,4;a
@@ -136,9 +145,19 @@ def test_a_german_table_becomes_a_diagnosis_by_clicks_and_the_other_sheets_open(
         said = browser.js(SAID)
         assert "gearheat card helical_two_stage --data desk/messung.csv -o desk/messung.card.toml" in said
         assert "gearheat diagnose desk/messung.csv --rig helical_two_stage --card desk/messung.card.toml" in said
+        browser.show("desk_data.png")
         browser.click("New")
         browser.click("Make")
         browser.wait(f"{SAID}.includes('Assumed values, those that matter most first')")
+        browser.wait("document.querySelector('.drawing img')?.naturalWidth > 100")
+        first = browser.js(FIRST_ASSUMED)
+        browser.click("Write")
+        browser.wait(f"{SAID}.includes('a value has a source')")
+        browser.js(SOURCE)
+        browser.click("Write")
+        browser.wait(f"{FIRST_ASSUMED} !== {json.dumps(first)}")
+        assert "gearheat.load('desk/mine.toml').with_(" in browser.js(SAID)
+        browser.show("desk_new.png")
         browser.click("Rigs")
         browser.click("Compare")
         browser.wait(f"{SAID}.includes('Steady states at the operating points')")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.fmu import compiling
+from gearheat.fmu.export import export
 from gearheat.model.errors import GearheatError, ScenarioError
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
@@ -68,11 +70,30 @@ def test_a_load_holds_against_either_rotation_over_time(rig, gearheat, tmp_path)
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_a_table_may_hold_loads_or_signed_torques(rig, count, tmp_path):
+def test_runs_and_fmus_take_loads_and_signed_torques_alike(rig, count, tmp_path, monkeypatch):
+    monkeypatch.setattr(compiling, "OPTIMISE", "-O0")
+    scenario = load(rig(count))
+    point = gh.steady(scenario)
+    begun = {f"{body}.T": point[f"{body}.T"] for body in ("oil", "wall", "gears", "shafts", "surface")}
+    room, oils = {key: value for key, value in scenario.operating_point.items() if key.startswith("room")}, []
+    for key, driven in (("load", scenario), ("tau", scenario.driven_by_torques())):
+        torque = abs(point["output.tau"]) if key == "load" else point["output.tau"]
+        duty, fmu = tmp_path / f"{key}.csv", tmp_path / f"{key}.fmu"
+        duty.write_text(f"time [min],input.w [rpm],output.{key} [N.m]\n0,1450,{torque}\n60,1450,{torque}\n")
+        export(driven.spec.flat(), fmu, start=room | {f"output.{key}": torque})
+        for run in (gh.simulate(scenario, duty, set=begun), gh.play(fmu, duty, set=begun)):
+            assert run["output.tau"] == pytest.approx(point["output.tau"])
+            assert run["input.P"][-1] > -run["output.P"][-1] > 0.9 * run["input.P"][-1]
+            oils.append(run["oil.T"][-1])
+    assert oils == pytest.approx([point["oil.T"]] * 4, abs=1e-3)
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_a_diagnosis_takes_loads_and_signed_torques_of_a_table_alike(rig, count, tmp_path):
     scenario = load(rig(count))
     (card := tmp_path / "card.toml").write_text("")
     point = gh.steady(scenario)
-    found = []
+    found, oils = [], []
     for sign in (1, -1):
         (path := tmp_path / f"{sign}.csv").write_text(
             "n_input_rpm,T_output_Nm,T_oil_C,T_wall_C,T_amb_C\n"
@@ -84,10 +105,12 @@ def test_a_table_may_hold_loads_or_signed_torques(rig, count, tmp_path):
         )
         campaign = read_campaign(path, scenario, read_card(card))
         found.append(model_values(campaign)["output.tau"])
-    nominal = drive_by(scenario, campaign.sensors).operating_point
-    assert nominal["output.tau"] == pytest.approx(point["output.tau"])
+        driven = drive_by(scenario, campaign.sensors)
+        oils.append(gh.steady(driven, {"output.tau": found[-1][0]})["oil.T"])
+    assert driven.operating_point["output.tau"] == pytest.approx(point["output.tau"])
     assert found[0] == pytest.approx(found[1])
     assert found[0][0] == pytest.approx(point["output.tau"], rel=1e-3)
+    assert oils == pytest.approx([point["oil.T"]] * 2, abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,8 @@ PLATES = {
     "worm": ("worm", 20.0, "1.5 kW"),
     "worm_geared": ("helical,worm", 100.0, "1.5 kW"),
     "planetary": ("planetary", 4.0, "5.5 kW"),
+    "planetary_three": ("planetary,planetary,planetary", 150.0, "15 kW"),
+    "planetary_bevel": ("bevel,planetary", 25.0, "5.5 kW"),
     "four": ("helical,helical,helical,helical", 300.0, "0.75 kW"),
 }
 
@@ -277,7 +279,14 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--stages", "bevel,worm"), "shafts turn by a right angle once"),
         (("--air-speed", "-1 m/s"), "expected 0 m/s or more"),
         (("--stages", "worm"), "expected 7 to 60"),
-        (("--stages", "helical,planetary"), "a planetary stage stands alone"),
+        (
+            ("--stages", "planetary,helical"),
+            "planetary stages come last here, and none with a worm. Give --stages helical,p",
+        ),
+        (
+            ("--stages", "planetary,worm"),
+            "planetary stages come last here, and none with a worm. Give --stages helical,w",
+        ),
         (("--speed", "0 rpm"), "must be above 0"),
         (("--power", "22"), '--power = "22" has no unit. Write "22 kW" or "22 W"'),
         (("--power", "2,2 kW"), 'has a decimal comma. Write "2.2 kW"'),
@@ -324,7 +333,16 @@ def test_what_a_refusal_advises_works(gearheat, tmp_path):
 
 @pytest.mark.parametrize(
     ("stages", "ratio"),
-    [("worm", 100), ("worm", 3), ("planetary", 20), ("spur", 90), ("helical,worm", 2000), ("bevel", 6), ("bevel", 200)],
+    [
+        ("worm", 100),
+        ("worm", 3),
+        ("planetary", 20),
+        ("planetary,planetary", 500),
+        ("spur", 90),
+        ("helical,worm", 2000),
+        ("bevel", 6),
+        ("bevel", 200),
+    ],
 )
 def test_the_stages_that_a_refusal_names_go(stages, ratio):
     plate = 2000.0, 1450 * math.pi / 30
@@ -333,6 +351,20 @@ def test_the_stages_that_a_refusal_names_go(stages, ratio):
     named = re.search(r"Give --stages (\S+)\.", str(refused.value)).group(1).split(",")
     assert sizing.unit(named, ratio, *plate).ratio == pytest.approx(ratio, rel=0.06)
     assert ("worm" in named) == ("worm" in stages and ratio > 60) and ("bevel" in named) == ("bevel" in stages)
+    assert ("planetary" in named) == ("planetary" in stages)
+
+
+def test_planetary_stages_in_series_pass_the_torque_on(made, gearheat):
+    """Each carrier drives the next sun; the ideal forces of one set, which follow from its shaft end, are refused."""
+    path, answer = made("planetary_three")
+    assert [s["kind"] for s in answer.json["stages"]] == ["planetary"] * 3
+    assert 0.94 < answer.json["efficiency"] < 0.975  # the three units by themselves: .985^3
+    values = gearheat("steady", path, "--json", "-").json["values"]
+    assert values["input.tau"] < values["output.load"] / 130
+    forces = [values[f"stage_{k}.F_t_sp"] for k in (1, 2, 3)]
+    assert forces == sorted(forces)
+    refused = gearheat("steady", path, "--set", "stage_1.power_flow=ideal")
+    assert "stage_1.reading is connected to nothing" in refused.err
 
 
 def test_a_worm_shaft_has_bearings_and_a_seal_of_its_size(gearheat, tmp_path):

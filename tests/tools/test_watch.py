@@ -9,9 +9,10 @@ import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.show.event_lines import as_text, opened
+from gearheat.tools.watch.page import page_of
 from gearheat.tools.watch.sources import Files, Source, Stream
 from gearheat.tools.watch.store import Store
-from gearheat.tools.watch.watch import Watch
+from gearheat.tools.watch.watch import SILENCE, Watch
 
 HEAD = "time_utc,n_hss_rpm,T_hss_Nm,T_nacelle_C,T_sump_C"
 EVERY = 5
@@ -130,6 +131,50 @@ def test_a_file_that_grows_and_is_made_anew(sensors: tuple[Sensor, ...], tmp_pat
         next(looks)
     assert [e["samples"] for e in said(store)] == [5, 10]
     assert list(store.machines) == ["one"]
+
+
+def test_a_source_that_is_silent_is_told_every_hour(sensors: tuple[Sensor, ...]) -> None:
+    store, clock = Store(None, ""), iter(1.5e9 + k * SILENCE / 2 for k in range(99))
+
+    class Silent:
+        def rows(self) -> Iterator[None]:
+            yield from [None] * 5
+
+        def kept(self) -> None:
+            pass
+
+    for _ in Watch(sensors, "segment", store, answer, EVERY, lambda: next(clock)).follow(Silent()):
+        pass
+    first, second = (event["text"] for event in said(store))
+    assert first.startswith("no sample has come for 60 min, at 2017-07-14T0") and second > first
+
+
+def test_the_page_tells_each_machine_with_bands_cause_and_since_when(
+    sensors: tuple[Sensor, ...], tmp_path: Path
+) -> None:
+    store = Store(None, "")
+    assert "No window is full yet" in page_of(store, "wind turbine")
+
+    def told(machine, kind, times, rows) -> dict:
+        warm = len(rows) * 0.5
+        shown = {"measured": 50 + warm, "predicted": 50.0, "low": 48.0, "high": 52.25}
+        cause = {"id": "cooling.cooler", "name": "oil cooler <2>", "probability": 0.59, "since": "2016-03-01"}
+        alarm = machine == "two" and len(rows) > EVERY
+        return {"readings": {"T_sump": shown}, "changed": 0.9, "p_any": 0.01, "causes": [cause]} | {
+            "verdict": "explained" if alarm else "consistent"
+        }
+
+    for machine in ("one", "two"):
+        lines = io.BytesIO("\n".join((HEAD, *map(line, range(11)), "x,1,2,3,4")).encode())
+        for _ in Watch(sensors, "segment", store, told, EVERY, lambda: 1.5e9).follow(Stream(lines, machine)):
+            pass
+    html = page_of(store, "wind turbine")
+    assert html.index("<h2>two</h2>") < html.index("<h2>one</h2>")
+    assert html.count('class="alarm"') == 1
+    assert "Alarm since 2016-03-01T01:30:00Z: oil cooler &lt;2&gt; 59% since 2016-03-01" in html
+    assert "<td>55.0</td><td>50.0</td><td>48.0 to 52.2</td>" in html
+    assert 'class="measured" points="0.0,22.0 300.0,2.0"' in html
+    assert "location.reload()" in html and "2 last warnings" in html
 
 
 def test_a_state_is_that_of_one_watch(tmp_path: Path) -> None:

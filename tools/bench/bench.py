@@ -26,7 +26,7 @@ from ...scenarios.measured.study import read_study
 from ..compare import campaign
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
-from . import contact, fmu as bench_fmu, scale, throughput, uncertainty as bench_uncertainty
+from . import contact, fmu as bench_fmu, pages, replays, scale, throughput, uncertainty as bench_uncertainty
 from .costs import rhs_s
 from .harness import PROGRAM, rows, timed
 
@@ -52,7 +52,8 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         json: file of the JSON object, "-" for stdout
         what: "job", the main job; "fmu", the FMU against its peers, and the batch; "batch" alone; "uncertainty", the
             FMU's standard deviations beside those of rows that are drawn; "contact", the contact solver; "scale", how
-            time and memory grow
+            time and memory grow; "watch", replays of measured years; "page",
+            pages of rigs
         draws: rows that are drawn
     """
     measures: dict[str, tuple[Callable[[], dict[str, Any]], Callable[[dict[str, Any]], None]]] = {
@@ -62,6 +63,8 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         "uncertainty": (lambda: bench_uncertainty.measure(rig, draws), _print_uncertainty),
         "contact": (contact.measure, _print_contact),
         "scale": (scale.measure, _print_scale),
+        "watch": (replays.measure, _print_watch),
+        "page": (pages.measure, _print_page),
     }
     load(rig)  # a rig that is none is told before other programs are started with it
     measure, show = measures[what]
@@ -253,6 +256,15 @@ def _print_contact(found: dict[str, Any]) -> None:
 
 def _print_scale(found: dict[str, Any]) -> None:
     table("What grows, each row a process of its own", scale.HEAD, scale.rows_of(found), wrapped=True)
+
+
+def _print_watch(found: dict[str, Any]) -> None:
+    table("Years as they come, window by window", replays.HEAD, replays.rows_of(found), wrapped=True)
+    table("Alarms and cost", replays.SUMS, replays.sums_of(found))
+
+
+def _print_page(found: dict[str, Any]) -> None:
+    table("Pages, their modules run by wasmtime, processor time without drawing", pages.HEAD, pages.rows_of(found))
 
 
 def _print_uncertainty(found: dict[str, Any]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .new import new
-from .plausible import MACHINES, WARM, usual
+from .plausible import MACHINES, WARM, no_load, usual
 
 HEAD = ("stages", "i", "kW", "rpm", "ISO VG", "", "efficiency [%]", "usual [%]", "oil [degC]", "bearings")
 
@@ -29,7 +29,8 @@ def draw_up(plate: str) -> Mapping[str, Any]:
     first, last = sizes["bearings"][0]["a"], sizes["bearings"][-1]["a"]
     named = (stages, ratio, power, speed, grade, ", ".join(options))
     cells = (*named, f"{eta:.2f}", f"{low:g} to {high:g}", f"{oil:.0f}", f"{first} to {last}")
-    return {"cells": cells, "plausible": low <= eta <= high and WARM[0] < oil < WARM[1]}
+    (least, most), idle = no_load(stages, float(power)), 100 * sizes["no_load_W"] / sizes["loss_W"]
+    return {"cells": cells, "plausible": low <= eta <= high and WARM[0] < oil < WARM[1] and least <= idle <= most}
 
 
 def print_table() -> None:

@@ -19,7 +19,7 @@ from ..describe.rig import Rig
 from ..show.console import writable, write
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions
-from .plausible import WARM, notes, usual
+from .plausible import WARM, no_load, notes, usual
 from .rig_file import around_of, text
 from .sizing import unit, wanted_of
 
@@ -65,7 +65,8 @@ def new(
 
     Args:
         name: of the rig
-        stages: from the input, such as "helical,helical"; bevel first, worm last, planetary alone
+        stages: from the input, such as "helical,helical"; bevel first, worm last, planetary
+            ones behind all others
         ratio: speed of the input over that of the output
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"
@@ -132,7 +133,11 @@ def new(
         "losses_W": rest.losses_by_kind(),
         "efficiency": rest["efficiency.eta"],
         "without_fan": _without_fan(flat, point) if fan else None,
-        "usual": {"efficiency_pct": usual(kinds, rest["input.P"] / 1000, ratio), "oil_degC": WARM},
+        "usual": {
+            "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, ratio),
+            "oil_degC": WARM,
+            "no_load_pct": no_load(kinds, kW),
+        },
         "base": base,
         "foot_share": foot / (rest["efficiency.P_loss"] + (around.motor or 0.0)),
     }

@@ -35,8 +35,15 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
         if len(kinds) > 1:
             low, high = (end * fast / 100 for end, fast in zip((low, high), known[str(len(kinds) - 1)], strict=True))
     else:
-        low, high = known[kinds[0] if kinds[0] in known else str(len(kinds))]
+        low, high = known.get(kinds[0], known)[str(len(kinds))]
     return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
+
+
+def no_load(stages: str | Sequence[str], kW: float) -> tuple[float, float]:
+    """Shares of the loss [%] that the page's units of such stages and power have without load."""
+    last, known = (stages.split(",") if isinstance(stages, str) else stages)[-1], MACHINES["no_load"]
+    low, high = known.get(last, known["gears"])
+    return low, high if kW >= 1 else high + known["small"]
 
 
 def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:

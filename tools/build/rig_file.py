@@ -123,7 +123,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around) -> str:
         "gap": GAP,
         "overhang": OVERHANG,
         "apart": APART,
-        "own_load": 0.0 if made.shafts[0].places else LIGHT,
+        "own_load": 0.0 if all(s.places for s in made.shafts) else LIGHT,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
@@ -164,6 +164,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
+        shape |= {"needles": f"planet_bearing_{k + 1}"}
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
         shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
@@ -173,8 +174,8 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
     c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
-    found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
-    found |= {"driver": "pinion", "driven": "wheel"}
+    found: dict[str, Any] = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    found |= {"driver": "pinion", "driven": "wheel", "needles": None}
     return (
         found
         | shape

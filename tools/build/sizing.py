@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,9 +27,9 @@ ROUNDED = 1.05
 CENTRED = ("spur", "helical", "worm")
 #: Of the box around the gears, what is room between them and its walls [m].
 ROOM = (0.040, 0.050, 0.080)
-#: Kinds of stages that stand alone, or last, as a worm does behind helical stages.
-ALONE = ("planetary",)
+#: Kinds of stages that stand last: a worm behind helical stages, planets behind any gears or other planets.
 LAST = "worm"
+IN_LINE = "planetary"
 #: From the middle of a bearing to a gear [m].
 SIDE = 0.020
 #: Between gears [m].
@@ -156,12 +156,21 @@ def unit(
     if isinstance(found[-1], WormStage):  # the wheel stands on the worm, gears before it at the worm's end
         length = shafts[-2].span + 0.090 + sum(s.b + GAP for s in found[:-1])
         height = max(s.a + sum(pair) for s, pair in zip(found, tips, strict=True)) + 0.080 + 2 * wall
-    elif isinstance(found[0], PlanetaryStage):
-        length = height = 2 * found[0].reach + 8 * found[0].m_n + 0.040 + 2 * wall
+    elif isinstance(found[-1], PlanetaryStage):  # one behind the other, gears before them beside the axis
+        ring = max(s.reach + 4 * s.m_n for s in found if isinstance(s, PlanetaryStage))
+        gears = [(s, tip) for s, tip in zip(found, tips, strict=True) if not isinstance(s, PlanetaryStage)]
+        beside = sum(s.along for s, _ in gears) + sum(_first(found[0], shafts[0]) for _ in gears[:1])
+        length = max(beside, ring) + ring + 0.040 + 2 * wall
+        height = max([2 * ring + 0.040, *(2 * max(tip) + 0.080 for _, tip in gears)]) + 2 * wall
     else:
-        length += shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
+        length += _first(found[0], shafts[0])
     drawn = Unit(tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume)
     return _boxed(drawn, wanted)
+
+
+def _first(stage: Stage, shaft: Shaft) -> float:
+    """How far the first gear reaches beyond its axis, or the shaft of a bevel pinion into the housing."""
+    return shaft.span if isinstance(stage, BevelStage) else stage.r_1 + stage.m_n
 
 
 def _boxed(made: Unit, wanted: Wanted) -> Unit:
@@ -195,19 +204,7 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
     problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
-    if "bevel" in kinds[1:]:
-        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
-        problems.append(f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}.")
-    if LAST in kinds[:-1]:
-        problems.append(f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}.")
-    if LAST in kinds and "bevel" in kinds:
-        problems.append(f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical.")
-    problems += [
-        f"a {kind} stage stands alone here. Give --stages {kind}, for ratios of {LEAST[kind]:g} to {MOST[kind]:g}, or"
-        f" helical stages, of up to {MOST['helical']:g} each."
-        for kind in ALONE
-        if kind in kinds and len(kinds) > 1
-    ]
+    problems += _misplaced(kinds)
     if not (power > 0 and speed > 0):
         problems.append('power and speed must be above 0. Give for example --power "7.5 kW" --speed "1450 rpm".')
     if not 0 < ratio < math.inf:
@@ -223,7 +220,7 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         )
     if bearings not in CHOICES:
         raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
-    choices = UNLOADED if "planetary" in kinds else CHOICES
+    choices = UNLOADED if IN_LINE in kinds else CHOICES
     d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0) if speed > 0 else 0.0
     if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
         needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
@@ -240,6 +237,20 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, beari
         raise ScenarioError(problems)
 
 
+def _misplaced(kinds: Sequence[str]) -> Iterator[str]:
+    """Stages that cannot stand where they are."""
+    if "bevel" in kinds[1:]:
+        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
+        yield f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}."
+    if LAST in kinds[:-1]:
+        yield f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}."
+    if LAST in kinds and "bevel" in kinds:
+        yield f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical."
+    if IN_LINE in kinds and set(kinds[kinds.index(IN_LINE) :]) != {IN_LINE}:
+        last = ",".join(sorted(kinds, key=lambda kind: kind == IN_LINE)) if LAST not in kinds else f"helical,{LAST}"
+        yield f"{IN_LINE} stages come last here, and none with a {LAST}. Give --stages {last}."
+
+
 def _other_stages(kinds: Sequence[str], ratio: float) -> str:
     """Stages that have a ratio where others have not, with a worm or a bevel stage as wanted."""
     if ratio < 1:
@@ -249,7 +260,8 @@ def _other_stages(kinds: Sequence[str], ratio: float) -> str:
         kept, left = None, ratio
     else:
         left = ratio / MOST[kept]
-    gears = ["helical"] * max(math.ceil(math.log(max(left, 1.0)) / math.log(MOST["helical"]) - 1e-9), kept is None)
+    kind = IN_LINE if kinds[-1] == IN_LINE and left >= LEAST[IN_LINE] else "helical"
+    gears = [kind] * max(math.ceil(math.log(max(left, 1.0)) / math.log(MOST[kind]) - 1e-9), kept is None)
     named = {LAST: [*gears, LAST], "bevel": ["bevel", *gears]}.get(kept or "", gears)
     return f"Give --stages {','.join(named)}."
 
@@ -274,7 +286,8 @@ def _share(ratio: float, kinds: Sequence[str]) -> float:
         share = min(max(ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
         return float(min(max(share, 1.0), MOST[kinds[0]]))
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
-    return float(min(max(share, ratio / math.prod(MOST[kind] for kind in kinds[1:]), 1.0), ratio, MOST[kinds[0]]))
+    least, most = (ratio / math.prod(limit.get(k, 1.0) for k in kinds[1:]) for limit in (LEAST, MOST))
+    return float(min(max(share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))
 
 
 def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft:
@@ -283,7 +296,10 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
     T = behind[0].T if behind else before[0].T * before[0].u
     n = behind[0].n if behind else before[0].n / before[0].u
     d = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
-    gears = [(s.forces[1], s.x, s.r_2) for s in before] + [(s.forces[0], s.x, s.r_1) for s in behind]
+    wheels = [s for s in stages if not isinstance(s, PlanetaryStage)]  # forces on sun and carrier are in balance
+    span = max((s.x + s.b / 2 for s in wheels), default=span / len(stages) - SIDE) + SIDE
+    gears = [(s.forces[1], s.x, s.r_2) for s in before if s in wheels]
+    gears += [(s.forces[0], s.x, s.r_1) for s in behind if s in wheels]
     if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
         beyond = SIDE + stages[0].b / 2
         span = OVERHANG * beyond
@@ -291,8 +307,6 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
     elif behind and isinstance(behind[0], WormStage):
         span = max(APART * 2 * behind[0].r_2, span if before else 0.0)
         gears[-1] = behind[0].forces[0], span / 2, behind[0].r_1
-    elif isinstance(stages[0], PlanetaryStage):  # the forces on sun and carrier are in balance
-        gears = []
     axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
     planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
     far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]

@@ -24,12 +24,15 @@ def bench(
     uncertainty: bool = False,
     contact: bool = False,
     scale: bool = False,
+    watch: bool = False,
+    page: bool = False,
     draws: int = 10_000,
     json: str | None = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
-    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty, "scale": scale}
-    if contact:
+    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
+    asked |= {"scale": scale, "watch": watch, "page": page}
+    if contact or watch or page:
         console.use_one_thread()
     from ..bench import bench
 

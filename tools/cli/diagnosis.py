@@ -34,9 +34,11 @@ def diagnose(
     json: str | None = None,
     report: Path | None = None,
     extended: Path | None = None,
+    live: Path | None = None,
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     console.use_one_thread()
+    console.writable(live)
     outputs = gh.Outputs(predictions, json, report, extended)
     findings = gh.diagnose(
         data,
@@ -57,6 +59,8 @@ def diagnose(
         outputs=outputs,
     )
     findings.write(outputs)
+    if live is not None:
+        gh.page(rig, extended=[extended] if extended and extended.is_file() else ()).save(live, report=report)
     if json == "-":
         print(console.as_json(findings.as_dict()), end="")
     else:

@@ -26,11 +26,14 @@ def run(
     extended: Path | None = None,
     data: Path | None = None,
     card: Path | None = None,
+    live: Path | None = None,
     json: str | None = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
-    console.writable(console.file_of(json))
+    console.writable(live, console.file_of(json))
     done = gh.run(rig, out, tests=tests, step=step, set=set_ or [], jobs=jobs, extended=extended, data=data, card=card)
+    if live is not None:
+        gh.page(rig, set=set_ or [], extended=[extended] if extended else ()).save(live, report=out / "report.html")
     console.answer(done.as_dict(), json, lambda: print_run(done))
 
 
@@ -121,6 +124,8 @@ def watch(
     every: int = 250,
     once: bool = False,
     alpha: float = 0.05,
+    page: Path | None = None,
+    publish: str = "",
     json: str | None = None,
 ) -> None:
     """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
@@ -136,6 +141,8 @@ def watch(
             every=every,
             once=once,
             alpha=alpha,
+            page=page,
+            publish=publish,
             after=out.last,
         )
         for event in events:

@@ -98,8 +98,10 @@ def _print_new(found: Mapping[str, Any]) -> None:
     by = "flange" if found["base"] == "flange" else "foot"
     print(f"efficiency {100 * found['efficiency']:.2f} %, {100 * found['foot_share']:.0f} % of the heat by the {by}")
     losses = ", ".join(f"{PLURAL.get(kind, kind)} {P:.3g} W" for kind, P in found["losses_W"].items())
-    print(f"  loss: {losses}; {found['no_load_W']:.3g} W without load")
-    (low, high), (cold, warm) = found["usual"].values()
+    print(f"  loss: {losses}")
+    (low, high), (cold, warm), (least, most) = found["usual"].values()
+    idle = 100 * found["no_load_W"] / found["loss_W"]
+    print(f"  without load: {found['no_load_W']:.3g} W, {idle:.0f} % of the loss, usual {least:g} to {most:g} %")
     print(f"  usual of such units: efficiency {low:g} to {high:g} %, oil {cold:g} to {warm:g} degC")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
 

@@ -145,14 +145,17 @@ def rating(
     grid: str = "5x5",
     out: Path | None = None,
     set_: list[str] | None = None,
+    live: Path | None = None,
     json: str | None = None,
 ) -> None:
     """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
     fitting(out, "a table")
-    console.writable(out, console.file_of(json))
+    console.writable(out, live, console.file_of(json))
     powers = gh.rating(rig, limit, room=room, speed=speed, grid=grid, set=set_ or [])
     if out is not None:
         powers.save(out)
+    if live is not None:
+        gh.page(rig, set=set_ or [], limit=limit.partition("=")[2]).save(live)
     found = powers.as_dict() | {"out": out and str(out)}
     console.answer(found, json, lambda: _print_rating(powers))
 

@@ -64,16 +64,21 @@ class Rig(Quantities):
             return self.scenario.spec.part(part).values.get(key, choice.default)
         return self.flat.quantity(name).start
 
-    def with_(self, set: Settings) -> Rig:
+    def with_(self, set: Settings, *, source: str = "") -> Rig:
         """The rig with other values.
 
         Args:
             set: values by name: texts with units, quantities of pint, or numbers in SI
+            source: where they are from, as the rig file tells it
 
         Raises:
             ScenarioError: all that is wrong with them
         """
-        return Rig(adjust(self.scenario, set))
+        changed = adjust(self.scenario, set)
+        if source:
+            names = [text.partition("=")[0].strip() for text in assignments_of(set, self.scenario.settable)]
+            changed = replace(changed, value_sources={**changed.value_sources, **dict.fromkeys(names, source)})
+        return Rig(changed)
 
     def join(self, *parts: Component, nets: Iterable[Sequence[str]]) -> Rig:
         """The rig with parts added, of types of one's own, too.

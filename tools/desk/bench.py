@@ -49,11 +49,15 @@ class Bench:
 
     def say(self, *words: str) -> None:
         """Show the command that does what was clicked."""
-        self.lines = [*self.lines, "gearheat " + shlex.join(words)][-SHOWN:]
+        self.say_line("gearheat " + shlex.join(words))
+
+    def say_line(self, line: str) -> None:
+        """Show a line that does what was clicked."""
+        self.lines = [*self.lines, line][-SHOWN:]
         self.log.clear()
         with self.log:
-            for line in self.lines:
-                ui.label(line).classes("command select-all")
+            for said in self.lines:
+                ui.label(said).classes("command select-all")
 
     async def work(self, place: Any, job: Callable[[], T]) -> T | None:
         """What a job gives, done beside the page; None where it fails, and the place then says why.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -77,23 +78,20 @@ def rigs_sheet(bench: Bench) -> None:
         with place:
             table(SimpleNamespace(title="Steady states at the operating points", table=lambda: _beside(names, states)))
 
-    async def export() -> None:
-        name = str(first.value)
-        path = bench.folder / f"{Path(name).stem}.fmu"
-        if await bench.work(place, lambda: gh.export(name, path)) is not None:
-            bench.say("export", name, "-o", str(path))
-            _offer(bench, place, path)
+    def writes(command: str, ending: str, job: Callable[[str, Path], object]) -> Callable[[], Awaitable[None]]:
+        async def made() -> None:
+            name = str(first.value)
+            path = bench.folder / f"{Path(name).stem}{ending}"
+            if await bench.work(place, lambda: job(name, path)) is not None:
+                bench.say(command, name, "-o", str(path))
+                with place:
+                    ui.link(str(path), bench.link(path), new_tab=True).classes("made")
 
-    async def write() -> None:
-        name = str(first.value)
-        path = bench.folder / f"{Path(name).stem}.html"
-        if await bench.work(place, lambda: gh.page(name).save(path)) is not None:
-            bench.say("page", name, "-o", str(path))
-            _offer(bench, place, path)
+        return made
 
     compare.on_click(beside)
-    fmu.on_click(export)
-    page.on_click(write)
+    fmu.on_click(writes("export", ".fmu", gh.export))
+    page.on_click(writes("page", ".html", lambda name, path: gh.page(name).save(path)))
 
 
 def _beside(names: list[str], states: list[gh.SteadyState]) -> tuple[list[str], list[list[Any]]]:
@@ -103,8 +101,3 @@ def _beside(names: list[str], states: list[gh.SteadyState]) -> tuple[list[str], 
     rows: list[list[Any]] = [[name, *(own[name][1] if name in own else "" for own in values)] for name in every]
     told = {name: own[name] for own in reversed(values) for name in own}
     return ["name", *names, "unit", "meaning"], [[*row, *told[row[0]][2:]] for row in rows]
-
-
-def _offer(bench: Bench, place: Any, path: Path) -> None:
-    with place:
-        ui.link(str(path), bench.link(path), new_tab=True).classes("made")

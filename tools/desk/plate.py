@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import gearheat as gh
@@ -55,13 +56,13 @@ def new_sheet(bench: Bench) -> None:
         options = [word for key, text in texts.items() for word in (f"--{key.replace('_', '-')}", text)]
         bench.say("new", str(name.value), *options, *(f"--{key}" for key, on in chosen.items() if on), "-o", str(path))
         with place:
-            _answer(*found)
+            _answer(bench, path, *found)
 
     make.on_click(made)
 
 
-def _answer(rig: gh.NewRig, about: gh.Description) -> None:
-    """What it does at the name plate, and what was assumed: what matters most first."""
+def _answer(bench: Bench, path: Path, rig: gh.NewRig, about: gh.Description) -> None:
+    """What it does at the name plate, its drawing, and what was assumed."""
     sizes = rig.sizes
     ui.label(
         f"{sizes['file']}: i = {sizes['ratio']:.5g}, oil {sizes['oil_degC']:.1f} degC, loss {sizes['loss_W']:.0f} W,"
@@ -69,12 +70,47 @@ def _answer(rig: gh.NewRig, about: gh.Description) -> None:
     ).classes("text-lg")
     for note in rig.notes:
         ui.label(note)
+    drawing = path.with_suffix(".svg")
+    if about.save_picture(drawing):
+        ui.image(bench.link(drawing)).classes("drawing w-full max-w-3xl")
+    _assumed(bench, ui.column().classes("w-full"), path, about)
+
+
+def _assumed(bench: Bench, place: Any, path: Path, about: gh.Description) -> None:
+    """Assumed values, those that matter most first, and a line that puts another one in place of one."""
     effects = about.effects()
     leading = [row[0] for row in effects[2]] if effects else []
     lines = {line["name"]: line for line in about.found["parameters"] if line["source"].startswith(ASSUMED)}
     order = [*(name for name in leading if name in lines), *(name for name in lines if name not in leading)]
     heads = {"name": "name", "value": "value", "unit": "unit", "doc": "what it is", "source": "rule"}
     columns = [{"name": key, "label": label, "field": key, "align": "left"} for key, label in heads.items()]
-    cells = [{key: digits({**lines[name], **(lines[name]["written"] or {})}[key]) for key in heads} for name in order]
+    rows = [{key: digits({**lines[name], **(lines[name]["written"] or {})}[key]) for key in heads} for name in order]
     title = "Assumed values, those that matter most first"
-    ui.table(columns=columns, rows=cells, title=title, row_key="name").props("dense flat wrap-cells").classes("assumed")
+    texts = {row["name"]: f"{row['value']} {row['unit'] or ''}".strip() for row in rows}
+    with place:
+        with ui.row().classes("items-end change"):
+            name = ui.select(list(texts), label="Change", with_input=True).classes("w-64")
+            value, source = ui.input("to"), ui.input("source, such as a drawing").classes("w-80 source")
+            name.on_value_change(lambda event: value.set_value(texts.get(event.value, "")))
+            name.set_value(next(iter(texts), None))
+            write = ui.button("Write")
+        ui.table(columns=columns, rows=rows, title=title, row_key="name").props("dense flat wrap-cells").classes(
+            "assumed"
+        )
+        below = ui.column()
+
+    async def written() -> None:
+        text, why = {str(name.value): str(value.value)}, str(source.value).strip()
+
+        def job() -> gh.Description:
+            if not why:
+                raise gh.GearheatError("a value has a source. Say where it is from.")
+            gh.load(path).with_(text, source=why).save(path)
+            return gh.show(path)
+
+        if (changed := await bench.work(below, job)) is not None:
+            bench.say_line(f"gearheat.load({str(path)!r}).with_({text!r}, source={why!r}).save({str(path)!r})")
+            place.clear()
+            _assumed(bench, place, path, changed)
+
+    write.on_click(written)

@@ -6,6 +6,7 @@ The program's own pages are written here: its commands with their options, the k
 from __future__ import annotations
 
 import contextlib
+import gc
 import json
 import re
 import shlex
@@ -26,6 +27,8 @@ from . import reference
 from .blocks import FENCE, MARKS, PAGES, call, run_pages
 from .reference import TABLES, code, fill_blocks, page
 
+#: New objects after which the collector of cycles looks through them, 700 by default.
+LOOK_AFTER = 100_000
 DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
 
 
@@ -69,11 +72,18 @@ def build(program: TyperGroup, public: Mapping[str, Any], out: Path) -> None:
         theme = "furo" if find_spec("furo") else "alabaster"
         settings = {**TABLES["sphinx"], **own, "html_theme": theme, "html_static_path": [str(static)]}
         places = (str(source), None, str(out), str(Path(work) / "trees"), "html")
+        gc.collect()  # before trees of millions of nodes are made, in which the collector would look for cycles
+        gc.freeze()
+        usual = gc.get_threshold()
+        gc.set_threshold(LOOK_AFTER)
         try:
             app = Sphinx(*places, confoverrides=settings, status=None, warningiserror=True, exception_on_warning=False)
             app.build()
         except SphinxError as error:
             raise GearheatError(f"docs: {error}") from error
+        finally:
+            gc.set_threshold(*usual)
+            gc.unfreeze()
         if app.statuscode:
             raise GearheatError("docs: Sphinx finds faults, see above.")
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 import gzip
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
@@ -32,6 +34,8 @@ from ..solve.steady import first_of, leading_outputs, loss_names
 FIELDS = 8
 #: A page larger than this is refused: mail and browsers would be slow with it [bytes].
 LARGEST = 4_000_000
+#: What a report says of the page.
+LIVE = "The machine computes: sliders, heat flows, warm-up and map"
 #: Ends of a slider as shares of a value [1].
 SHARES = (0.5, 2.0)
 #: Of a speed or a torque at a shaft end [1].
@@ -50,11 +54,12 @@ class Page(Answer):
 
     html: str = ""
 
-    def save(self, path: str | Path) -> Path:
+    def save(self, path: str | Path, *, report: str | Path | None = None) -> Path:
         """Write the page.
 
         Args:
             path: .html
+            report: HTML file of a report, which gets a link to the page
 
         Raises:
             DataError: it cannot be written
@@ -62,6 +67,10 @@ class Page(Answer):
         from ..show.console import write
 
         write(Path(path), self.html)
+        if report is not None:
+            text = Path(report).read_text(encoding="utf-8")
+            place = quote(os.path.relpath(path, Path(report).parent).replace(os.sep, "/"))
+            write(Path(report), text.replace("<body>", f'<body>\n<p><a href="{place}">{LIVE}</a></p>', 1))
         return Path(path)
 
 

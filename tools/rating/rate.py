@@ -11,12 +11,14 @@ from scipy.optimize import brentq
 from ...model.core.flat import Quantity
 from ...model.errors import Problems
 from ...model.parts.ports import COLDEST, HOTTEST
+from ...model.run.result import Outside
 from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer, Table
 from ..solve.settings import adjust
+from ..solve.steady import list_outside
 from .gather import Machine, machine_of
 from .methods import FACTORS, METHODS, Method
 
@@ -145,17 +147,10 @@ def _outside(method: Method, uses: Sequence[LawUse]) -> list[dict[str, Any]]:
             low, high = use.law.ranges[argument]
             if not low <= float(value) <= high:
                 met.setdefault((use.law, argument), []).append(float(value))
-    return [
-        {
-            "part": method.title,
-            "law": law.name,
-            "argument": argument,
-            "range": list(law.ranges[argument]),
-            "met": [min(values), max(values)],
-            "regime": "",
-        }
+    return list_outside(
+        Outside(method.title, law.name, argument, *law.ranges[argument], min(values), max(values))
         for (law, argument), values in met.items()
-    ]
+    )
 
 
 def total(losses: Mapping[str, Mapping[str, float]]) -> float:

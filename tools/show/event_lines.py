@@ -69,7 +69,7 @@ def as_text(event: Mapping[str, Any]) -> str:
     if event["event"] == "warning":
         return f"{event['machine']}: warning: {event['text']}"
     head = f"{event['to']} {event['machine']}"
-    named = ", ".join(_cause(c) for c in event.get("causes", ())) or "no cause stands out"
+    named = ", ".join(describe(c) for c in event.get("causes", ())) or "no cause stands out"
     if event["event"] == "alarm":
         return f"{head}: ALARM: {named}"
     if event["event"] == "cleared":
@@ -82,6 +82,7 @@ def as_text(event: Mapping[str, Any]) -> str:
     return f"{head}: {', '.join(shown)}; changed {event['changed']:.0%}{alarm}"
 
 
-def _cause(cause: Mapping[str, Any]) -> str:
+def describe(cause: Mapping[str, Any]) -> str:
+    """A cause in words: name, probability, since when."""
     since = f" since {cause['since']}" if cause["since"] else ""
     return f"{cause['name']} {cause['probability']:.0%}{since}"

@@ -21,12 +21,21 @@ MARGIN = 2
 
 
 def print_outside(outside: Sequence[Mapping[str, Any]]) -> None:
-    """Print a line for each law that was used outside its range, as the JSON objects list them."""
-    for o in outside:
+    """Print a line for each law that was used outside its range, as the JSON objects list them, and one for all."""
+    levels = [o["level"] for o in outside]
+    if len(outside) > 1:
+        early = sum(o["until_s"] is not None for o in outside)
+        counts = f"{levels.count('warning')} far from it (warning), {levels.count('note')} near it or early (note)"
+        say(
+            f"{len(outside)} laws outside their range: {counts}" + (f", {early} at the beginning only" if early else "")
+        )
+    for o in sorted(outside, key=lambda o: o["level"] == "note"):
         (least, most), (low, high) = o["met"], o["range"]
         met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
+        until = "" if o["until_s"] is None else f", until {o['until_s']:.4g} s"
         there = f": {o['regime']}" if o["regime"] else ""
-        say(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g}){there}")
+        valid = f"{met}{until} (valid {low:g} to {high:g})"
+        say(f"{o['level']}, outside its range: {o['part']}: {o['law']}, {o['argument']} = {valid}{there}")
 
 
 def unchecked_lines(entries: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from ...model.core.declare import Port, State, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
-from ...model.run.result import Result
+from ...model.run.result import Outside, Result
 from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
 from ...scenarios.given import RigLike, Settings, scenario_of
@@ -282,6 +282,17 @@ def point_of(flat: FlatModel, result: Result) -> dict[str, Any]:
 
 def outside_of(result: Result) -> list[dict[str, Any]]:
     """The laws a result used outside their range."""
+    return list_outside(result.outside, result.index)
+
+
+def list_outside(found: Iterable[Outside], times: Sequence[float] | np.ndarray = (0.0,)) -> list[dict[str, Any]]:
+    """Laws outside their range as results list them: a "warning" far from it, a "note" near it or at first only.
+
+    Args:
+        found: the laws
+        times: of the rows [s]; what is outside in their first half only is so at first
+    """
+    half = len(times) // 2
     return [
         {
             "part": o.component,
@@ -290,6 +301,8 @@ def outside_of(result: Result) -> list[dict[str, Any]]:
             "range": [o.low, o.high],
             "met": [o.lowest, o.highest],
             "regime": o.regime,
+            "level": "warning" if o.far and o.last >= half else "note",
+            "until_s": float(times[o.last]) if o.last < half else None,
         }
-        for o in result.outside
+        for o in found
     ]

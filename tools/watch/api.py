@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import time
@@ -13,6 +14,9 @@ from ...model.errors import DataError
 from ...scenarios.given import RigLike
 from ...scenarios.measured.sensors import sensors_of
 from ..diagnose.request import Inputs, PlanRequest, Request, read_plan
+from ..show.console import write
+from .broker import PORTS, Broker
+from .page import page_of
 from .sources import Files, Source, Stream
 from .store import Store
 from .watch import WINDOW, Watch, identity
@@ -33,14 +37,16 @@ def watch(
     every: int = WINDOW,
     once: bool = False,
     alpha: float = 0.05,
+    page: File | None = None,
+    publish: str = "",
     after: int | None = None,
 ) -> Iterator[dict[str, Any]]:
     """Follow logs while they grow, and diagnose all that has come with every window of samples.
 
     Args:
         rig: name of a shipped rig, or path of a rig file
-        source: CSV or Parquet file that grows, a folder whose files and sub-folders are a machine each, or "-" for
-            standard input
+        source: CSV or Parquet file that grows, a folder whose files and sub-folders are a machine each, "-" for
+            standard input, or mqtt://HOST/TOPIC
         card: columns, units and accuracies
         reference_logs: healthy logs of the one machine that is watched
         sibling_logs: a healthy log of each of other machines; a watched machine with the name of such a file has it
@@ -49,6 +55,8 @@ def watch(
         every: samples of a window
         once: end with the source instead of waiting for more
         alpha: rate of false alarms of each diagnosis
+        page: HTML file that is written anew with every window, and loads itself again
+        publish: topic of the broker of the source under which events go out, each at least once
         after: number of the last event that is known; without it, that of the last one that was taken
 
     Returns:
@@ -63,9 +71,15 @@ def watch(
         ...     print(event["event"], event["machine"])
     """
     problems = [] if every >= 3 else [f"--every {every}: a window has three samples or more."]
-    if str(source) != "-" and not Path(source).exists():
+    broker = str(source).startswith(tuple(f"{scheme}://" for scheme in PORTS))
+    if not broker and str(source) != "-" and not Path(source).exists():
         problems.append(f"{source}: there is no such file or folder.")
-    written = {} if state is None else {"--state": Path(state)}
+    if broker and once:
+        problems.append("--once: a broker has no end. Leave it out.")
+    if publish and not broker:
+        problems.append("--publish: only the broker of a source mqtt://HOST/TOPIC takes events.")
+    places = {"--state": state, "--page": page}
+    written = {option: Path(file) for option, file in places.items() if file is not None}
     found = read_plan(PlanRequest(rig, card=None if card is None else Path(card)), written, problems)
     paths = [tuple(map(Path, logs)) for logs in (reference_logs, sibling_logs)]
     request = Request(rig, card=found.request.card, reference_logs=paths[0], sibling_logs=paths[1], alpha=alpha)
@@ -78,20 +92,35 @@ def watch(
     store = Store(None if state is None else Path(state), f"{identity(request)} {every}")
     segment = inputs.card.columns.get("segment", "segment")
     own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time)
-    return _events(own, store, _source(str(source), store, once), after)
+    taken = _source(str(source), store, once, state, publish)
+    return _events(own, store, taken, after, None if page is None else Path(page), inputs.scenario.name)
 
 
-def _source(source: str, store: Store, once: bool) -> Source:
-    return Stream() if source == "-" else Files(Path(source), store.place, once)
+def _source(source: str, store: Store, once: bool, state: File | None, publish: str) -> Source:
+    if source == "-":
+        return Stream()
+    if not source.startswith(tuple(PORTS)):
+        return Files(Path(source), store.place, once)
+    kept = None if state is None else hashlib.sha256(f"{Path(state).resolve()} {source}".encode()).hexdigest()
+    return Broker(source, kept and f"gearheat-{kept[:12]}", publish)
 
 
-def _events(own: Watch, store: Store, source: Source, after: int | None) -> Iterator[dict[str, Any]]:
+def _events(
+    own: Watch, store: Store, source: Source, after: int | None, page: Path | None, rig: str
+) -> Iterator[dict[str, Any]]:
     """Events as they are written."""
+    shown = -1
     last: int = (store.place(TAKEN) or 0) if after is None else after
     for _ in own.follow(source):
         for number, text in list(store.events(last)):
-            yield json.loads(text)
+            event = json.loads(text)
+            if isinstance(source, Broker):
+                source.tell(event, text)
+            yield event
             store.move(TAKEN, last := number)
+        if page is not None and shown != last:
+            shown = last
+            write(page, page_of(store, rig))
     store.commit()
     if not any(m.count or math.isfinite(m.answered) for m in store.machines.values()):
         raise DataError("no sample came that can be used. Check the source, and the columns of its card.")

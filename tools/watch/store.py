@@ -148,6 +148,11 @@ class Store:
         """Numbers and JSON lines of the events after a number."""
         yield from self.base.execute("select number, text from events where number > ? order by number", [after])
 
+    def last(self, machine: str, kind: str, n: int) -> list[dict[str, Any]]:
+        """The last n events of a kind in order, of one machine or, if that is empty, of all."""
+        query = "select text from events where kind = ? and ? in (machine, '') order by number desc limit ?"
+        return [json.loads(text) for (text,) in self.base.execute(query, [kind, machine, n])][::-1]
+
 
 def _opened(path: Path | None, about: str) -> sqlite3.Connection:
     """The file, made where it is not there."""

@@ -23,6 +23,8 @@ from .store import Cells, Machine, Store
 WINDOW = 250
 #: Samples are kept so long: a year in question, and a month [s].
 KEPT = 396 * 86400.0
+#: A source that is silent so long is told [s].
+SILENCE = 3600.0
 #: A time that is so far ahead of the clock is none [s].
 AHEAD = 86400.0
 
@@ -59,9 +61,16 @@ class Watch:
             source: of the samples
         """
         yield from self._answer()
+        heard = self.clock()
         for row in source.rows():
             if row is not None:
                 self._take(row)
+                heard = self.clock()
+            elif self.clock() >= heard + SILENCE:
+                heard = self.clock()
+                now = datetime.fromtimestamp(heard, UTC)
+                said = f"no sample has come for {SILENCE / 60:.0f} min, at {now:%Y-%m-%dT%H:%MZ}"
+                self._warn(Machine("source", ""), said)
             if row is None or any(m.count > self.every for m in self.store.machines.values()):
                 self.store.commit()
                 source.kept()

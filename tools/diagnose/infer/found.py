@@ -13,7 +13,10 @@ from ..model.noise import Term
 from . import screen
 from .fit import Fit
 from .prior import Prior
-from .problem import Problem
+from .problem import Aside, Problem
+
+#: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
+Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +64,27 @@ class Hypothesis:
     extras: tuple[Extra, ...] = ()
     forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     error: float = 0.0
+
+    def form(self, cause: str) -> str:
+        """Name of the form of a cause."""
+        return next(a.formula.form.name for a in self.fit.look.acting if a.id == cause)
+
+
+def with_forms(hypotheses: Mapping[Key, Hypothesis]) -> list[Hypothesis]:
+    """Hypotheses of any forms; forms that were not fitted count with the best of those that differ in forms alone."""
+    alike: dict[tuple[object, ...], list[Hypothesis]] = {}
+    for key, h in hypotheses.items():
+        alike.setdefault((frozenset(h.causes), *key[1:]), []).append(h)
+    found = []
+    for own in alike.values():
+        own.sort(key=lambda h: -h.log_joint)
+        best, log = own[0], own[0].log_joint
+        for a in best.fit.look.acting:
+            logs, known = best.forms.get(a.id, {}), {h.form(a.id) for h in own}
+            more = [value - logs[best.form(a.id)] for name, value in logs.items() if name not in known]
+            log += float(np.log1p(np.exp(np.minimum(more, 0.0)).sum()))
+        found += [replace(best, log_joint=log), *own[1:]]
+    return found
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ at the best of them until the best one stays. All fits are weighed alike, nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -20,7 +20,7 @@ from . import screen, sets
 from .draws import correction
 from .evidence import WIDTHS, White
 from .fit import Fit, Start, bounds, fitted, started
-from .found import Extra, Found, Hypothesis
+from .found import Extra, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
 from .terms import ERRORS, Term, gross, remainders, sizes, spreads
@@ -47,15 +47,13 @@ QUICK = 3
 FIRST = 2.0
 
 Progress = Callable[[str, float], None]
-#: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
-_Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 
 @dataclass(frozen=True, eq=False)
 class _Combination:
     """Sets of terms with the same forms, scatters and gross readings, and the likeliest of them."""
 
-    key: _Key
+    key: Key
     best: sets.TermSet
     log: float
 
@@ -116,8 +114,8 @@ class Weighing:
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
-        self.hypotheses: dict[_Key, Hypothesis] = {}
-        self.exchanged = set[_Key]()
+        self.hypotheses: dict[Key, Hypothesis] = {}
+        self.exchanged = set[Key]()
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
@@ -215,23 +213,39 @@ class Weighing:
     def _fit_alone(self, near: Fit, look: screen.Look, wanted: Collection[str] = ()) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
-        for start, logs in self._promising(look, (), n, wanted):
-            formula = start.acting.formula
-            z, _ = near.moved(self.problem, start.effect)
+        for start, logs in self._promising(look, set(), n, wanted):
             for aside in dict.fromkeys((self.problem.aside, self.whole.aside)):
-                with suppress(SolveError):
-                    fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
-                    self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
+                key = (frozenset[Formula](), frozenset[str](), aside)
+                self._fit_joined(near, self.whole.without(aside), start, key, {start.acting.id: logs})
+
+    def _fit_joined(
+        self,
+        near: Fit,
+        problem: Problem,
+        start: Start,
+        key: Key,
+        forms: Mapping[str, Mapping[str, float]],
+        extras: tuple[Extra, ...] = (),
+    ) -> None:
+        """Fits a cause joined to what acts in a fit; key is as of the hypothesis, whatever its forms."""
+        z, kept = near.moved(problem, start.effect)
+        acting = [*kept, start.acting]
+        with suppress(SolveError):
+            fit = fitted(problem, acting, z, near.noise.scales)
+            self._keep((frozenset(a.formula for a in acting), *key[1:]), fit, extras, forms)
 
     def _promising(
-        self, look: screen.Look, taken: Collection[str], n: int, wanted: Collection[str] = ()
+        self, look: screen.Look, taken: Set[str], n: int, wanted: Collection[str] = ()
     ) -> Iterator[tuple[Start, dict[str, float]]]:
-        """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms."""
+        """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
+
+        Causes that are taken, by name or family, are left out.
+        """
         log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
         best: dict[str, int] = {}
         for k in np.argsort(-value, kind="stable"):
-            if self.formulas[k].cause.family not in taken:
+            if taken.isdisjoint((self.formulas[k].cause.id, self.formulas[k].cause.family)):
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
@@ -253,12 +267,10 @@ class Weighing:
             with suppress(SolveError):
                 near = fitted(problem, rest, best.fit.look.z, best.fit.noise.scales)
                 look = screen.look(problem, near, self.formulas)
-                for start, logs in self._promising(look, {b.formula.cause.family for b in rest}, EXCHANGED):
-                    z, kept = near.moved(problem, start.effect)
-                    fit = fitted(problem, [*kept, start.acting], z, near.noise.scales)
+                taken = {a.id, *(b.formula.cause.family for b in rest)}
+                for start, logs in self._promising(look, taken, EXCHANGED):
                     forms = {c: known for c, known in best.forms.items() if c != a.id} | {start.acting.id: logs}
-                    own = frozenset(b.formula for b in (*kept, start.acting))
-                    self._keep((own, *key[1:]), fit, best.extras, forms)
+                    self._fit_joined(near, problem, start, key, forms, best.extras)
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
@@ -274,13 +286,13 @@ class Weighing:
 
     def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
         """Sets put together by their forms and scatters, the likeliest first."""
-        members: dict[_Key, list[sets.TermSet]] = {}
+        members: dict[Key, list[sets.TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
         each = [_Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()]
         return sorted(each, key=lambda c: -c.log)
 
-    def _key(self, s: sets.TermSet) -> _Key:
+    def _key(self, s: sets.TermSet) -> Key:
         terms = self.linear.terms
         forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
         aside = self.whole.aside | _aside(terms, s)
@@ -319,7 +331,7 @@ class Weighing:
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
 
-    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
+    def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
@@ -330,26 +342,10 @@ class Weighing:
         if key not in self.hypotheses or log > self.hypotheses[key].log_joint:
             self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
 
-    def _with_forms(self) -> list[Hypothesis]:
-        """All hypotheses; with the best of those that differ in their forms alone, forms that were not fitted count."""
-        alike: dict[tuple[object, ...], list[Hypothesis]] = {}
-        for key, h in self.hypotheses.items():
-            alike.setdefault((frozenset(h.causes), *key[1:]), []).append(h)
-        found = []
-        for own in alike.values():
-            own.sort(key=lambda h: -h.log_joint)
-            best, log = own[0], own[0].log_joint
-            for a in best.fit.look.acting:
-                logs, known = best.forms.get(a.id, {}), {_form(h, a.id) for h in own}
-                more = [value - logs[_form(best, a.id)] for name, value in logs.items() if name not in known]
-                log += float(np.log1p(np.exp(np.minimum(more, 0.0)).sum()))
-            found += [replace(best, log_joint=log), *own[1:]]
-        return found
-
     def _weighed(self) -> Found:
         """All hypotheses with their probabilities, the leading ones corrected by draws of the exact model."""
         self.progress("draws of the exact model", 0.9)
-        found, done = self._with_forms(), set[int]()
+        found, done = with_forms(self.hypotheses), set[int]()
         while True:
             best = max(h.log_joint for h in found)
             near = [k for k, h in enumerate(found) if k not in done and h.log_joint >= best - NEAR]
@@ -381,11 +377,6 @@ class Weighing:
 def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
     """The gross readings of a set."""
     return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
-
-
-def _form(h: Hypothesis, cause: str) -> str:
-    """Name of the form that a cause has in a hypothesis."""
-    return next(a.formula.form.name for a in h.fit.look.acting if a.id == cause)
 
 
 def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:

@@ -18,6 +18,9 @@ from .forms import SIDE, Context, Regime, beside_own_law, weighed
 HUMIDITY_SPAN = 0.15
 #: The least range of a relative change of an emissivity [1].
 BRIGHTER = 0.02
+#: The least emissivity of a housing [1]: polished cast iron 0.21, galvanised sheet 0.23, oxidised aluminium 0.2 to 0.3
+#: (tables of thermographic cameras).
+SHINY = 0.2
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -59,10 +62,11 @@ def _beside_own_law(cause: Cause, parts: Sequence[str], at: Context) -> Cause:
 
 
 def emissivity(at: Context) -> Iterator[Cause]:
-    """A surface that radiates differently: not more than a black one."""
+    """A surface that radiates differently: not more than a black one, nor less than bare metal."""
     paths = {name: [f"{name}.emissivity"] for name in at.roles.surfaces}
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in paths)
-    size = replace(entry("cooling.emissivity", at).cause.size, high=max(1 / brightest - 1, BRIGHTER))
+    low, high = min(SHINY / brightest - 1, -BRIGHTER), max(1 / brightest - 1, BRIGHTER)
+    size = replace(entry("cooling.emissivity", at).cause.size, low=low, high=high)
     yield from scaled(at, "cooling.emissivity", paths, _linear, size=size)
 
 

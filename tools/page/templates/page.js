@@ -96,7 +96,7 @@ async function unpack(text) {
 }
 
 /* Settings: values in SI by name, those that differ from the machine's own. */
-let machines, machine, set = {}, kept = null, plot = null, timer = 0;
+let machines, machine, set = {}, kept = null, plot = null, timer = 0, widest = 0;
 
 function vectors(values) {
   const u = machine.start("inputs"), p = machine.start("parameters");
@@ -181,6 +181,31 @@ function drawBars(now, then) {
   const bar = (v, y, style) => `<rect class="bar ${style}" x="230" y="${y}" height="10" width="${(260 * Math.abs(v)) / most}"/><text x="${236 + (260 * Math.abs(v)) / most}" y="${y + 9}">${digits(v)} W</text>`;
   byId("bars").innerHTML = `<svg viewBox="0 0 600 ${own.length * high + 4}" role="img" aria-label="${escaped(own.map(([l, v]) => `${l} ${digits(v)} W`).join(", "))}">${
     own.map(([label, v], i) => `<text x="224" y="${i * high + 13}" text-anchor="end">${escaped(label)}</text>${bar(v, i * high + 4, "")}${then ? bar(other[i][1], i * high + 15, "kept") : ""}`).join("")}</svg>`;
+}
+
+/* Heat from where it arises to where it leaves, as wide as its flow; the largest sum seen so far sets the scale. */
+function drawFlows(now) {
+  const place = byId("flows"), sum = (names) => names.reduce((all, name) => all + now.read(name), 0);
+  if (!now.read) return void (place.textContent = "");
+  const own = [Object.entries(machine.losses), machine.heat.map((name) => [name.replace(/\.Q_flow_?/, " ").trim(), [name]])]
+    .map((side) => side.map(([label, names]) => [label, sum(names)]));
+  const sides = [0, 1].map((i) => [...own[i].filter(([, v]) => v > 0), ...own[1 - i].filter(([, v]) => v < 0).map(([l, v]) => [l, -v])]);
+  const totals = sides.map((side) => side.reduce((all, [, v]) => all + v, 0));
+  widest = Math.max(widest, ...totals);
+  const scale = 170 / (widest || 1), tall = Math.max(...sides.map((side) => side.reduce((all, [, v]) => all + Math.max(v * scale, 12) + 4, 0)), 20);
+  const bands = sides.map((side, i) => {
+    const [outer, inner, label, anchor] = i ? [400, 310, 406, "start"] : [170, 270, 164, "end"], half = (outer + inner) / 2;
+    let y = 2, at = (tall - totals[i] * scale) / 2;
+    return side.map(([name, v]) => {
+      const h = v * scale, from = y, to = at;
+      y += Math.max(h, 12) + 4;
+      at += h;
+      return `<path d="M${outer} ${from}C${half} ${from} ${half} ${to} ${inner} ${to}v${h}C${half} ${to + h} ${half} ${from + h} ${outer} ${from + h}z"/>`
+        + `<text x="${label}" y="${from + Math.max(h, 12) / 2 + 4}" text-anchor="${anchor}">${escaped(name)} ${digits(v)} W</text>`;
+    }).join("");
+  });
+  place.innerHTML = `<svg viewBox="0 0 600 ${tall + 4}" role="img" aria-label="Heat flows: ${digits(totals[0])} W arise, ${digits(totals[1])} W leave">${
+    bands.join("")}<rect class="bar" x="270" width="40" y="${(tall - totals[0] * scale) / 2}" height="${totals[0] * scale}"/></svg>`;
 }
 
 /* A course from the room's temperature, as long as it takes to come near its end. */
@@ -309,6 +334,7 @@ function readLink() {
 function update() {
   const begun = performance.now(), now = solve(set), then = kept && solve(kept), status = byId("status");
   drawValues(now, then);
+  drawFlows(now);
   drawBars(now, then);
   const laws = now.read ? outside(now.result) : [];
   byId("validity").innerHTML = laws.length ? laws.map((text) => `<li class="wrong">${escaped(text)}</li>`).join("") : "<li>All laws are inside the ranges of their sources.</li>";
