@@ -184,28 +184,6 @@ def _check(rows: int, option: str) -> None:
         raise ScenarioError(f"{option}: {rows} rows. Give at least 1 and at most {MOST_ROWS}.")
 
 
-def check_rows(axes: Sequence[Axis], values: np.ndarray, known: Mapping[str, Quantity]) -> None:
-    """Refuse rows with values that cannot be: the tail of a normal distribution may lie beyond a bound.
-
-    Args:
-        axes: what is varied
-        values: of the rows in SI (rows, axes)
-        known: the quantity of every name
-
-    Raises:
-        ScenarioError: a value is out of range or not whole
-    """
-    problems = Problems()
-    for axis, column in zip(axes, values.T, strict=True):
-        quantity = known[axis.name]
-        ends = (float(column.min()), float(column.max()))
-        if (problem := next(filter(None, map(quantity.problem, ends)), None)) is not None:
-            problems.append(f"--vary: {problem} Some rows lie there: vary it less.")
-        elif quantity.whole and (column != np.round(column)).any():
-            problems.append(f"--vary: {axis.name} must be whole in all rows. Give a --grid of whole steps.")
-    problems.check()
-
-
 def describe_axis(axis: Axis, quantity: Quantity) -> dict[str, object]:
     """An axis for a summary, in the unit shown to a person."""
     first = from_si(axis.first, quantity.unit)

@@ -161,7 +161,6 @@ def plan_sweep(request: Request) -> Plan:
         values = sampling.lay_grid(axes, request.grid)
     else:
         axes, values = _draw_rows(request, scenario, flat, axes)
-    sampling.check_rows(axes, values, {axis.name: flat.quantity(axis.name) for axis in axes})
     job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
     drawn = _outputs(request) or leading_outputs(scenario) or job.outputs[:MOST_PANELS]
     return Plan(scenario.name, request.kind, axes, values, job, flat, find_unchecked(scenario, flat), drawn)
