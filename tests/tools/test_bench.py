@@ -5,7 +5,7 @@ import math
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.tools.bench import scale
+from gearheat.tools.bench import replays, scale
 from gearheat.tools.bench.bench import _imports, _integration
 from gearheat.tools.bench.uncertainty import measure
 
@@ -53,3 +53,24 @@ def test_time_and_memory_of_what_grows_are_those_of_processes(tmp_path, monkeypa
 def test_what_a_command_reads_has_the_size_that_is_asked(tmp_path, made):
     scale.MADE[made](tmp_path, 30)
     assert len((tmp_path / "given.csv").read_text().splitlines()) == 31
+
+
+def test_alarms_agree_where_the_diagnosis_alarms_in_that_window_with_that_name():
+    causes, other = [{"id": "cooling.cooler", "probability": 0.31}], [{"id": "losses.churning", "probability": 0.4}]
+    alarm = {"to": "2016-03-24T22:00:00Z", "before": "2016-03-23T04:20:00Z", "over": "", "causes": causes}
+    at, quiet = {"alarm": True, "causes": causes}, {"alarm": False, "causes": []}
+    alarms = [
+        alarm | {"batch": at, "batch_before": quiet},
+        alarm | {"batch": at | {"causes": other}, "batch_before": quiet},
+        alarm | {"batch": at, "batch_before": at},
+    ]
+    year = {"case": "R80711 in 2014", "samples": 26298, "windows": 105, "s": 210.0, "last_s": 3.0, "alarms": alarms}
+    found = replays.summed([year, year | {"case": "R80711 in 2016"}])
+    assert (found["alarms"], found["agree"], found["false_alarms"]) == (6, 2, 3)
+    assert found["healthy_years"] == pytest.approx(0.5, rel=1e-3)
+    assert found["core_share"] == pytest.approx(200 * 420 / (2 * 26298 * 600))
+    rows = replays.rows_of(found)
+    assert [row[4].split("; ")[1] for row in rows[:3]] == [
+        "the diagnosis " + w for w in ("agrees", "differs", "differs")
+    ]
+    assert dict(replays.sums_of(found))["false alarms a machine and year"] == "6.0"
