@@ -170,8 +170,8 @@ class _Reader:
             ends = in_si(np.array([low, high]), unit, si, name=name) if si else (low, high)
             numbers = known[name] if si else cells.numbers(name) if kind != "text" else np.full(cells.n, np.nan)
             self.problems += [
-                f"{cells.table.place(int(row))}: {self.context[name]} is out of range. The {doc} must be from {low:g} to"
-                f" {high:g} {unit}".rstrip()
+                f"{cells.table.place(int(row))}: {self.context[name]} is out of range. The {doc} must be from"
+                f" {low:g} to {high:g} {unit}".rstrip()
                 + "."
                 for row in np.flatnonzero((numbers < ends[0]) | (numbers > ends[1]))
             ]
