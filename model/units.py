@@ -40,8 +40,12 @@ ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
 
 #: Units in which a person gives what the model has in SI.
 USUAL = {"W": "kW", "m": "mm"}
+#: SI units whose values must say whether they hold an angle; of others, as N.m.s, either form is usual.
+ANGULAR = ("rad/s", "rad", "1", "N.m")
 #: A comma between digits.
 _COMMA = re.compile(r"\d,\d")
+#: A digit that is not zero.
+_DIGIT = re.compile(r"[1-9]")
 #: Longest unit [characters].
 LONGEST = 80
 #: Powers of powers and exponents of three digits, which no unit has and whose values take for ever.
@@ -93,11 +97,15 @@ def _fitting(written: str, target: str, difference: bool = False) -> Any:
         if difference and str(unit) in ("degree_Celsius", "degree_Fahrenheit"):
             unit = ureg.Unit("delta_" + str(unit))
         ureg.Quantity(0.0, unit).to(_pint_unit(target))
-        turns = target != "rad/s" or ureg.get_root_units(unit)[1] == ureg.get_root_units(target)[1]
+        turns = target not in ANGULAR or ureg.get_root_units(unit)[1] == ureg.get_root_units(_pint_unit(target))[1]
+        energy = target == "N.m" and any(ureg.Unit(name).is_compatible_with("J") for name in unit._units)
     except Exception:  # the parser of units fails on odd text in many ways, and all mean the same to the user
         raise ScenarioError(
             f'unit "{written}" does not fit {show_unit(target)}. Write for example "{example(target)}".'
         ) from None
+    if energy or (not turns and target != "rad/s"):
+        kind = "an energy" if energy else "of an angle or a number"
+        raise ScenarioError(f'"{written}" is {kind}, and does not fit {show_unit(target)}. Write "{example(target)}".')
     if not turns:
         raise ScenarioError(
             f'"{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per second) or rad/s.'
@@ -110,14 +118,22 @@ def split_quantity(text: str) -> tuple[float, str]:
     stripped = text.strip().replace("\N{MINUS SIGN}", "-")  # as documents have it
     head, _, tail = stripped.partition(" ")
     try:
-        return float(head), tail.strip()
+        return parse_number(head), tail.strip()
     except ValueError:
         for i in range(len(stripped), 0, -1):
             try:
-                return float(stripped[:i]), stripped[i:].strip()
+                return parse_number(stripped[:i]), stripped[i:].strip()
             except ValueError:
                 continue
         raise ValueError(f"{text!r} is no number with a unit") from None
+
+
+def parse_number(text: str) -> float:
+    """A number as it is written, also nan and inf. Raises ValueError where it is none, or too small to be held."""
+    number = float(text)
+    if "_" in text or (number == 0.0 and _DIGIT.search(text.lower().partition("e")[0])):
+        raise ValueError(text)
+    return number
 
 
 def refuse_comma(text: str, name: str) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..model.errors import DataError, Problems, ScenarioError, suggestion, visible
 from ..model.files import tables
-from ..model.units import spell_unit, to_si
+from ..model.units import parse_number, spell_unit, to_si
 from .document import read_text
 
 #: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
@@ -31,6 +31,7 @@ _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
 #: A number whose point or comma may separate thousands, and one where it separates decimals.
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
 _DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?")
+_DIGITS = re.compile(r"[+-]?[0.]*[1-9]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
@@ -183,7 +184,8 @@ def numbers(cells: Sequence[str]) -> np.ndarray | None:
     if not all(map(_NUMBER.fullmatch, cells)):
         return None
     found = np.fromiter(map(float, cells), float, len(cells))
-    return found if np.isfinite(found).all() else None
+    nothing = {cell for cell, value in zip(cells, found, strict=True) if value == 0.0}
+    return found if np.isfinite(found).all() and not any(map(_DIGITS.match, nothing)) else None
 
 
 def number(cell: str) -> float:
@@ -194,7 +196,11 @@ def number(cell: str) -> float:
         raise ValueError("is not finite. Write a number or leave out the row")
     if not _NUMBER.fullmatch(cell):
         raise ValueError("is no number. Write a number with a decimal point and no unit")
-    if not math.isfinite(value := float(cell)):
+    try:
+        value = parse_number(cell)
+    except ValueError:
+        raise ValueError("is too small to be held. Write 0, or check its exponent") from None
+    if not math.isfinite(value):
         raise ValueError("is not finite. Write a number or leave out the row")
     return value
 

@@ -20,13 +20,18 @@ from pathlib import Path
 import numpy as np
 
 from ..model.core.flat import FlatModel, Quantity
-from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
+from ..model.errors import DataError, GearheatError, Problems, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
 from ..model.units import show_unit, to_si
 from .csv_table import number, numbers, raise_all, read_cells, read_header, split_unit
+from .ranges import check_range
 
 TIME = Quantity("time", "s", "time")
 
+#: [s].
+YEAR = 3.156e7
+#: Latest time, since 1970 or since the begin of a table [s].
+LATEST = 250 * YEAR
 #: Times nearer than this are one [s].
 APART = 1e-6
 #: A step large enough to tell the slope of a unit's conversion from its offset without rounding.
@@ -51,7 +56,7 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
     path = Path(path)
     known = {q.name: q for q in inputs.inputs} if isinstance(inputs, FlatModel) else inputs
     header, rows = read_cells(path)
-    problems: list[str] = []
+    problems = Problems()
     values: dict[str, np.ndarray] = {}
     for i, cell in enumerate(header):
         try:
@@ -61,15 +66,8 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
             continue
         if quantity.name in values:
             problems.append(f"{path.name} line 1: {quantity.name} is there twice. Keep one of its columns.")
-        whole = numbers([cells[i] for _, cells in rows])
-        values[quantity.name] = column = np.full(len(rows), np.nan) if whole is None else offset + slope * whole
-        if whole is not None and not any(map(quantity.problem, (column.min(), column.max()))):
-            continue
-        for k, (line, cells) in enumerate(rows):
-            try:
-                column[k] = _in_range(quantity, offset + slope * number(cells[i]))
-            except ValueError as error:
-                problems.append(f'{path.name} line {line}: {quantity.name} = "{cells[i]}" {error}.')
+        cells = [cells[i] for _, cells in rows]
+        values[quantity.name] = _values(path.name, quantity, (offset, slope), cells, [k for k, _ in rows], problems)
     if len(header) == 1:
         problems.append(f"{path.name} line 1: no input beside the time. Add a column, one of: {', '.join(known)}.")
     if TIME.name in values:
@@ -77,6 +75,32 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
         problems += _time_problems(path.name, rows, values[TIME.name])
     raise_all(problems, path.name)
     return Schedule(values.pop(TIME.name), values)
+
+
+def _values(
+    name: str,
+    quantity: Quantity,
+    scale: tuple[float, float],
+    cells: Sequence[str],
+    lines: Sequence[int],
+    problems: Problems,
+) -> np.ndarray:
+    """A column in SI (n,), NaN where a cell is wrong."""
+    offset, slope = scale
+    whole = numbers(cells)
+    column = np.full(len(cells), np.nan) if whole is None else offset + slope * whole
+    if whole is None or any(map(quantity.problem, (column.min(), column.max()))):
+        for k, cell in enumerate(cells):
+            try:
+                column[k] = _in_range(quantity, offset + slope * number(cell))
+            except ValueError as error:
+                problems.append(f'{name} line {lines[k]}: {quantity.name} = "{cell}" {error}.')
+    if problems or not np.isfinite(column).any():
+        return column
+    for k in {int(column.argmin()), int(column.argmax())}:
+        with problems:
+            check_range(f"{name} line {lines[k]}: {quantity.name}", cells[k], float(column[k]), quantity)
+    return column
 
 
 def _with_jumps(time: np.ndarray) -> np.ndarray:
@@ -139,6 +163,8 @@ def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.nd
         for a, b in zip(readable, readable[2:], strict=False)
         if time[b] == time[a] and np.ptp(time[readable]) > 0
     ]
+    if readable and not np.abs(time[readable]).max() <= LATEST:
+        problems.append(f"{name}: the time goes beyond {LATEST / YEAR:g} years. Check its unit.")
     if readable and np.ptp(time[readable]) == 0:
         problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")
     return problems

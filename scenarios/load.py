@@ -49,6 +49,7 @@ from .references import in_order, look_up, refers
 from .repeats import expand
 from .scenario import DRIVES, Instrument, Protocol, Scenario, check_drives
 from .shipped import RIGS, list_rigs
+from .table_checks import campaign_problems, losses_problems, point_problems
 from .tables import RigTable, validate
 from .values import (
     PartValues,
@@ -63,7 +64,7 @@ from .values import (
 )
 
 #: Time between the halves of a test.
-STOP = Quantity("stop", "s", "time between the halves of a test", low=0.0)
+STOP = Quantity("stop", "s", "time between the halves of a test", low=0.0, high=6e7)
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -251,12 +252,19 @@ class _Loader:
         self.problems += problems
         self.value_sources |= sources
         written = dict(paths({k: v for k, v in told.items() if k not in ABOUT}))
+        self.problems += point_problems(where, {k: v for k, v in told.items() if k not in ABOUT})
         point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
             f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
             for path in given
             if path in self.settable and path not in written
+        ]
+        ends = tuple(f"{name}." for name, cls in self.types.items() if cls.__name__ == "ShaftEnd")
+        self.problems += [
+            f"{where}: {path} follows from what [drive] says is given. Take it out."
+            for path in written
+            if given and path in self.settable and path.startswith(ends) and {*given} <= {*written} - {path}
         ]
         return point
 
@@ -321,6 +329,8 @@ class _Loader:
         found: list[Instrument] = []
         for key, table in self.table.sensors.items():
             place = f"{self.file} [sensors] {key}"
+            if not key.strip():
+                self.problems.append(f"{place}: a sensor has no name. Give it that of its column.")
             if table.reads not in known:
                 self.problems.append(f'{place}: there is no "{table.reads}".{suggestion(table.reads, known)}')
                 continue
@@ -345,18 +355,7 @@ class _Loader:
                     **accuracy,
                 )
             )
-        for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
-            place = f"{self.file} [losses] {column}"
-            if path not in known:
-                self.problems.append(f'{place}: there is no "{path}".{suggestion(path, known)}')
-            elif known[path].unit != "W" and (len(self.table.losses[column]) > 1 or split_unit(column)[1] == "W"):
-                self.problems.append(f"{place}: {path} ({known[path].doc}) is no power. Sum powers only.")
-        self.problems += [
-            f"{self.file} [losses] {column}: {path} is there twice. Name it once."
-            for column, summed in self.table.losses.items()
-            for path in dict.fromkeys(summed)
-            if summed.count(path) > 1
-        ]
+        self.problems += losses_problems(self.file, self.table.losses, known)
         return tuple(found)
 
     def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
@@ -379,11 +378,7 @@ class _Loader:
         if table is None:
             return None
         where = f"{self.file} [campaign]"
-        for path in (table.room, *table.inputs):
-            if path not in self.settable:
-                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, self.settable)}')
-        if table.oil not in self.types:
-            self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
+        self.problems += campaign_problems(where, table, self.settable, self.types, self.table.sensors)
         with self.problems:
             stop = in_range(f"{where}: ", table.stop, STOP)
             return Protocol(table.inputs, table.room, table.oil, stop, tuple(table.notes))

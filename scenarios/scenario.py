@@ -209,6 +209,13 @@ class Scenario:
             ScenarioError: unknown name, with suggestions
         """
         found = entry_values(self._entry(part, name), settable(self.types[part]))
+        known, taken = self._known(part), settable(self.types[part]).keys()
+        own = {key for old in self.entries.get(part, {}).values() if old in known for key in known[old].values}
+        if lacking := sorted(own & taken - found.keys()):
+            raise ScenarioError(
+                f"{part} = {name}: it lacks {', '.join(lacking)}, which {', '.join(self.entries[part].values())} gives."
+                " Choose one of the same kind."
+            )
         return {f"{part}.{key}": value for key, value in found.items()}
 
     def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from ..model.errors import ScenarioError, suggestion
 
 #: Kinds of sensors.
 Kind = Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency", "current"]
+
+
+def _is_sign(value: float) -> float:
+    if value not in (1.0, -1.0):
+        raise ValueError("is no sign")
+    return value
 
 
 class Strict(BaseModel):
@@ -35,11 +41,15 @@ class Strict(BaseModel):
             raise ScenarioError(problem_of(name, dict(e), cls) for e in error.errors()) from None
 
 
+#: A sign as files write it.
+Sign = Annotated[float, AfterValidator(_is_sign)]
+
+
 class DrivenTable(Strict):
     """One input of the model while a point is held."""
 
     column: str = Field(description="name of the column that gives it")
-    sign: list[float] = Field([1.0, 1.0], min_length=2, max_length=2, description="two signs, for direction 1 and 2")
+    sign: list[Sign] = Field([1.0, 1.0], min_length=2, max_length=2, description="two signs, for direction 1 and 2")
 
 
 class SensorTable(Strict):
@@ -51,7 +61,7 @@ class SensorTable(Strict):
     role: Literal["given", "read"] | None = Field(None, description='"given" drives the model, "read" is compared')
     unit: str | None = Field(None, description='unit of the column, for example "degC"')
     magnitude: bool = Field(False, description="true where the column holds magnitudes")
-    signs: list[float] | None = Field(
+    signs: list[Sign] | None = Field(
         None, min_length=2, max_length=2, description="sign of the model's value in direction 1 and 2, for magnitudes"
     )
     repeat_sd: str | None = Field(None, description='scatter from reading to reading, for example "0.35 K"')

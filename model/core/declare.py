@@ -135,7 +135,9 @@ class Choice:
 
     def takes(self, value: Any) -> bool:
         """Whether a value may be chosen."""
-        return not self.options or value in self.options or (self.also is not None and isinstance(value, self.also))
+        if not self.options or (self.also is not None and isinstance(value, self.also)):
+            return True
+        return any(value == option and isinstance(value, bool) == isinstance(option, bool) for option in self.options)
 
 
 class Port:

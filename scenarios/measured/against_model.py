@@ -134,7 +134,11 @@ def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, floa
     row, read, model = max(rises, key=lambda r: abs(r[1] - r[2]))
     where = f"{place(campaign, row)}: {sensor.column} is {read:.3g} K over the room, the model gives {model:.3g} K."
     short = not campaign.steady  # a reading may be far below the steady state
-    if middle > RISE_FACTOR or not (short or middle >= 1 / RISE_FACTOR):
+    below = float(np.quantile([read for _, read, _ in rises], 0.25))
+    started = campaign.start_by_room < 0 or np.isfinite(campaign.T_start).any()
+    if below < -PROBE_ERROR and not started and all(model > SMALL_RISE for _, _, model in rises):
+        yield f"{where} Losses keep a machine warmer than its room: check {sensor.column} and {rooms[0].column}."
+    elif middle > RISE_FACTOR or not (short or middle >= 1 / RISE_FACTOR):
         given = ", ".join(f"{s.column} ({s.unit})" for s in campaign.given)
         yield f"{where} Check the units of what drives it: {given}."
     elif middle > SLIP_FACTOR and sensor.unit == "degC":

@@ -17,6 +17,10 @@ from ..tables import SensorTable, Strict
 SCHEMAS = ("gearheat.card/1", "gearheat.card/2")
 #: Largest prior standard deviation of a parameter, relative to its value.
 WIDEST = 3.0
+#: Fields of the card that no file gives.
+INNER = ("name", "warnings")
+#: Viscosity at 40 over that at 100 degC, from silicones to naphthenic oils: least and largest.
+THINNING = (1.5, 60.0)
 #: Shortest time that a row of a test is held [min].
 SHORTEST = 0.01
 #: Longest time that a row of a test is held, or stands still [min].
@@ -33,7 +37,7 @@ class Channel(Strict):
 
     repeat_sd: str | None = Field(default=None, description='scatter from reading to reading, "0.35 K"')
     offset_sd: str | None = Field(default=None, description='tolerance fixed over the campaign, "0.3 K"')
-    full_scale: float | None = Field(default=None, description="range of the instrument, for the reader")
+    full_scale: float | None = Field(default=None, gt=0, description="range of the instrument, for the reader")
 
     _numbers = field_validator("repeat_sd", "offset_sd", mode="before")(_text)
 
@@ -133,7 +137,7 @@ def read_card(path: Path | None) -> Card:
         raise DataError(f"{path.name}: is no card. Write one with `gearheat card RIG -o {path.name}`.")
     first = raw.get("schema") == SCHEMAS[0]
     raw, warnings = _known_only(path.name, raw) if first else (raw, [])
-    problems = Problems()
+    problems = Problems(f'{path.name}: unknown key "{key}".' for key in INNER if key in raw)
     with problems:
         card = Card.read(path.name, {**raw, "name": path.name, "warnings": tuple(warnings)})
         problems += _problems(card)
@@ -174,7 +178,7 @@ def _known_only(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list
         )
         return {key: value for key, value in table.items() if key in names}
 
-    found = kept(raw, {k: f for k, f in Card.model_fields.items() if k not in ("name", "warnings")}, "")
+    found = kept(raw, {k: f for k, f in Card.model_fields.items() if k not in INNER}, "")
     for key, model in (("protocol", Protocol), ("oil", Oil)):
         if isinstance(found.get(key), Mapping):
             found[key] = kept(found[key], model.model_fields, f"{key}.")
@@ -197,8 +201,14 @@ def _problems(card: Card) -> list[str]:
     if (oil.nu40 is None) != (oil.nu100 is None):
         problems.append(f"{name} oil: give both nu40 and nu100 [mm2/s], or the name of an oil of the catalogue.")
     if oil.nu40 is not None and oil.nu100 is not None:
+        low, high = THINNING
         if oil.nu100 >= oil.nu40:
             problems.append(f"{name} oil: nu100 is not below nu40. An oil gets thinner as it warms up.")
+        elif not low <= oil.nu40 / oil.nu100 <= high:
+            ratio = oil.nu40 / oil.nu100
+            problems.append(
+                f"{name} oil: nu40 is {ratio:.3g} times nu100; of oils it is {low:g} to {high:g} times. Check both."
+            )
         if oil.nu40 < 1.0:
             problems.append(f"{name} oil: nu40 = {oil.nu40:g} is too small. Give viscosities in mm2/s.")
     return problems

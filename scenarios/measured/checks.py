@@ -12,6 +12,7 @@ from ...model.units import text
 from ..csv_table import raise_all
 from .against_model import LEAST_TESTS, Oils, against_model, format_value, place
 from .nominal import Nominal, efficiency, shaft_powers
+from .placeholders import placeholders
 from .sensors import ACCURACY, SI
 from .table import Campaign, Sensor
 
@@ -27,7 +28,7 @@ FAR = 50.0
 POOREST = 0.2
 #: Efficiencies above this in most rows cannot be [1]: an instrument that errs raises them in one direction alone.
 BEST = 1.0
-#: The same where the machine runs in one direction only.
+#: The same in most rows of one direction.
 BEST_OF_ONE = 1.1
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
@@ -54,6 +55,8 @@ def check(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = Fa
     problems = [
         *_accuracies(campaign, nominal),
         *_temperatures(campaign),
+        *placeholders(campaign.name, campaign.sensors, campaign.values, campaign.lines),
+        *_empty(campaign),
         *_contradictions(campaign),
         *_scales(campaign, nominal),
     ]
@@ -145,6 +148,13 @@ def _temperatures(campaign: Campaign) -> Iterator[str]:
             )
 
 
+def _empty(campaign: Campaign) -> Iterator[str]:
+    """Columns of what is compared that hold no number."""
+    for sensor in campaign.read:
+        if campaign.n and not np.isfinite(campaign.values[sensor.name]).any():
+            yield f"{campaign.name}: column {sensor.column} holds no number. Give what was read, or take it out."
+
+
 def _contradictions(campaign: Campaign) -> Iterator[str]:
     """Readings that are there twice."""
     first: dict[int, int] = {}
@@ -198,15 +208,21 @@ def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     if powers is None or len(powers) < 2:
         return
     eta = efficiency(powers)
-    best = BEST if len(np.unique(campaign.direction)) > 1 else BEST_OF_ONE
-    odd = (eta > best) | (eta < POOREST)
-    if odd.sum() * 2 <= np.isfinite(eta).sum():
+    directions = np.unique(campaign.direction)
+    limits = [(BEST_OF_ONE, campaign.direction == way) for way in directions]
+    if len(directions) > 1:
+        limits.insert(0, (BEST, np.ones(campaign.n, dtype=bool)))
+    for best, rows in limits:
+        odd = rows & ((eta > best) | (eta < POOREST))
+        if odd.sum() * 2 > (rows & np.isfinite(eta)).sum():
+            break
+    else:
         return
     row = int(np.flatnonzero(odd)[0])
     torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
     yield (
         f"{place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {best:g} or less"
-        f" than {POOREST:g} in {odd.sum()} of {campaign.n} rows. Check units and signs of {torques}."
+        f" than {POOREST:g} in {odd.sum()} of {rows.sum()} rows. Check units and signs of {torques}."
     )
 
 

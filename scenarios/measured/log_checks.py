@@ -7,9 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...model.errors import DataError
+from ..csv_table import raise_all
 from ..scenario import Scenario
 from .checks import check
 from .nominal import Nominal, drive_by
+from .placeholders import placeholders
 from .table import Campaign, Sensor
 
 #: Means of a log that are judged.
@@ -48,6 +50,7 @@ def check_log(
         raise DataError(
             f"{name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
         )
+    raise_all(list(placeholders(name, sensors, values, lines)), name)
     check(_as_campaign(name, sensors, values, lines, step), Nominal(drive_by(scenario, sensors)), {})
 
 

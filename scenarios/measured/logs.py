@@ -20,6 +20,7 @@ import numpy as np
 from ...model.errors import DataError, Problems
 from ...model.files import reading
 from ..csv_table import header_problems, in_si, raise_all, split_unit
+from ..duty import LATEST, YEAR
 from ..scenario import Scenario
 from .card import Card
 from .checks import COLDEST, HOTTEST
@@ -32,10 +33,6 @@ from .table import Sensed, Sensor
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
 #: What a column holds that is no calendar's.
 NUMBERS = "numbers"
-#: [s].
-YEAR = 3.156e7
-#: Latest time, since 1970 or since the begin of a log [s].
-LATEST = 250 * YEAR
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
 #: Least step of a log [s].
@@ -155,9 +152,9 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
     return Log(name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
-def find_time(header: Iterable[str]) -> str:
-    """The column of time, empty without one."""
-    return next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
+def find_times(header: Iterable[str]) -> list[str]:
+    """The columns of time."""
+    return [h for h in header if h in TIMES or split_unit(h)[0] in TIMES]
 
 
 def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
@@ -165,11 +162,13 @@ def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -
     sensors, problems = place_sensor(sensors_of(scenario, card), header, card, name)
     if not any(s.role == "read" for s in sensors):
         problems.append(f"{name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
-    time_column = find_time(header)
-    if not time_column:
+    times = find_times(header)
+    if len(times) > 1:
+        problems.append(f"{name} line 1: {' and '.join(times)} are columns of time. Keep one.")
+    if not times:
         problems.append(f'{name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
     raise_all(problems, name)
-    return sensors, time_column
+    return sensors, times[0]
 
 
 def read_columns(
@@ -204,7 +203,7 @@ def read_columns(
                     parts[h].append(_compact([row[k] for _, row in block]))
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
-    except (OSError, EOFError, UnicodeDecodeError, zlib.error, csv.Error):
+    except (OSError, EOFError, ValueError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
     if not lines:
         raise DataError([f"{path.name}: holds no samples."])
@@ -217,7 +216,8 @@ def _compact(cells: Sequence[str]) -> Sequence[Any]:
         found = np.fromiter((float(cell) if cell else math.nan for cell in cells), float, len(cells))
     except ValueError:
         return cells
-    return cast(Sequence[Any], found) if np.isfinite(found).sum() + cells.count("") == len(cells) else cells
+    plain = np.isfinite(found).sum() + cells.count("") == len(cells) and not any("_" in cell for cell in cells)
+    return cast(Sequence[Any], found) if plain else cells
 
 
 def _join(parts: Sequence[Sequence[Any]]) -> Sequence[Any]:
@@ -249,7 +249,7 @@ def parse_number(cell: Any) -> float:
     """A cell as a number, NaN where it is empty. Raises TypeError or ValueError where it is none."""
     if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
         return math.nan
-    if math.isinf(number := float(cell)):
+    if math.isinf(number := float(cell)) or isinstance(cell, bool) or (isinstance(cell, str) and "_" in cell):
         raise ValueError
     return number
 

@@ -5,9 +5,11 @@ Rows that were run and not read come in: where a test lacks one that nearly all 
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,7 @@ from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card
+from .card_names import misnamed
 from .checks import check
 from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal, drive_by
@@ -39,6 +42,16 @@ USUAL = 0.5
 UNREAD = 0
 
 Step = tuple[float, float]
+
+_ISO = re.compile(r"\d{4}-\d\d-\d\d")
+
+
+def _is_day(text: str) -> bool:
+    try:
+        date.fromisoformat(text)
+    except ValueError:
+        return False
+    return True
 
 
 def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
@@ -95,6 +108,8 @@ class _Reader:
         declared = sensors_of(scenario, card)
         self.sensors, self.problems = place_sensor(declared, self.header, card, path.name)
         context = {name: card.columns.get(name, name) for name in CONTEXT}
+        if not points:
+            self.problems += misnamed(scenario, card, declared, self.header, path.name)
         self.context = {name: column for name, column in context.items() if column in self.header}
         if not (points or any(s.role == "read" for s in self.sensors)):
             names = ", ".join(s.column for s in declared if s.role == "read")
@@ -111,7 +126,8 @@ class _Reader:
         raise_all(self.problems, self.path.name)
         values = {s.name: self._values(table, s) for s in self.sensors}
         self.sensors, values = without_sign(self.scenario, self.sensors, values)
-        minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
+        minutes = {name: self._si(cells, name) for name, (_, _, si, _, _) in CONTEXT.items() if si}
+        self._check_context(cells, minutes)
         raise_all(self.problems, self.path.name)
         found = self._ordered(cells, values, minutes)
         nominal = Nominal(drive_by(self.scenario, self.sensors))
@@ -125,7 +141,7 @@ class _Reader:
             for s in self.sensors
         ]
         for name, column in self.context.items():
-            doc, kind, _ = CONTEXT[name]
+            doc, kind = CONTEXT[name][:2]
             options = DIRECTIONS if name == "direction" else ()
             above, least = (0.0 if name == n else -np.inf for n in ("dwell_min", "stop_min"))
             found.append(Column(column, doc, kind, required=False, options=options, above=above, at_least=least))
@@ -146,6 +162,24 @@ class _Reader:
         with self.problems:
             numbers = in_si(numbers, spell_unit(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
         return numbers
+
+    def _check_context(self, cells: Cells, known: Mapping[str, np.ndarray]) -> None:
+        """Refuse numbers of the context out of their range, and days that no calendar has."""
+        for name, (doc, kind, si, low, high) in CONTEXT.items():
+            unit = split_unit(name)[1]
+            ends = in_si(np.array([low, high]), unit, si, name=name) if si else (low, high)
+            numbers = known[name] if si else cells.numbers(name) if kind != "text" else np.full(cells.n, np.nan)
+            self.problems += [
+                f"{cells.table.place(int(row))}: {self.context[name]} is out of range. The {doc} must be from"
+                f" {low:g} to {high:g} {unit}".rstrip()
+                + "."
+                for row in np.flatnonzero((numbers < ends[0]) | (numbers > ends[1]))
+            ]
+        self.problems += [
+            f'{cells.table.place(row)}: {self.context["date"]} = "{day}" is no day. Write it as 2014-03-05.'
+            for row, day in enumerate(cells.texts("date"))
+            if _ISO.fullmatch(day) and not _is_day(day)
+        ]
 
     def _ordered(self, cells: Cells, values: dict[str, np.ndarray], si: dict[str, np.ndarray]) -> Campaign:
         """The campaign with its tests in running order."""

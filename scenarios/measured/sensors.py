@@ -11,15 +11,17 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...model.core.declare import State, list_declared
+from ...model.core.declare import Parameter, State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import DataError, Problems, suggestion
 from ...model.files import tables
+from ...model.parts import PARTS
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spell_unit, text, to_si
 from ..csv_table import Table, split_unit
+from ..nuisances import DEFAULT_SD
 from ..scenario import Instrument, Scenario
 from ..values import deviation
 from .card import Card
@@ -27,8 +29,9 @@ from .nominal import Nominal
 from .table import Sensor
 
 _TABLES = tables("scenarios.measured", "sensors.toml")
-#: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, and its SI unit.
-CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str]] = _TABLES["context"]
+#: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, its SI unit, and the least
+#: and largest number in the unit of its name.
+CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str, float, float]] = _TABLES["context"]
 #: Directions as tables write them.
 DIRECTIONS = (1, 2, -1, 0)
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
@@ -143,15 +146,34 @@ class _Sensors:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
             else:
                 self._refuse(f"channels.{key}", key)
+        self._priors()
         self._drive()
+        self._ways()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
         self.problems.check(DataError)
         return tuple(sensors)
+
+    def _priors(self) -> None:
+        """Refuse prior standard deviations of what the rig does not have."""
+        types = {**PARTS, **{cls.__name__: cls for cls in self.scenario.types.values()}}
+        known = {f"{kind}.{key}" for kind, cls in types.items() for key in list_declared(cls, Parameter)}
+        known |= {*DEFAULT_SD, *self.scenario.settable()}
+        self.problems += [
+            f'{self.card.name} prior_sd: there is no parameter "{name}".{suggestion(name, known)}'
+            for name in self.card.prior_sd
+            if name not in known
+        ]
 
     def _drive(self) -> None:
         """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
         named = [i.reads for i in self.found.values() if i.role == "given"]
         protocol = self.scenario.protocol
+        inputs = self.scenario.inputs()
+        self.problems += [
+            f'{self.card.name} sensors.{i.name}: {i.reads} is no input, and cannot be given. Give it the role "read".'
+            for i in self.found.values()
+            if i.role == "given" and i.reads not in inputs
+        ]
         usual = self.scenario.driven_by(protocol.inputs if protocol else ()).driven_by_torques()
         driven = usual.driven_by(named)
         self.driven = driven.driven_paths()
@@ -162,6 +184,18 @@ class _Sensors:
                 f" {len(usual.driven_paths() & shafts)} of the speeds and torques of its shaft ends."
                 ' Give some of them the role "read".'
             )
+
+    def _ways(self) -> None:
+        """Refuse sensors that are read of what drives the model, and signs of what has none."""
+        given = {i.reads for i in self.found.values() if i.reads in self.driven and i.role != "read"}
+        for i in self.found.values():
+            if i.role == "read" and i.reads in self.driven - given and self.known[i.reads].unit in ("rad/s", "N.m"):
+                self.problems.append(
+                    f'{self.card.name} sensors.{i.name}: {i.reads} drives the model. Give it the role "given", or have'
+                    " another speed or torque given in its place."
+                )
+            if i.signs not in (None, (1.0, 1.0)) and self.known[i.reads].unit == "K":
+                self.problems.append(f"{self.card.name} sensors.{i.name}: a temperature has no signs. Take them out.")
 
     def _name(self, key: str) -> str | None:
         """The sensor that a key of the card means: its name, its column, or the path that it alone reads."""

@@ -66,6 +66,7 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         "watch": (replays.measure, _print_watch),
         "page": (pages.measure, _print_page),
     }
+    load(rig)  # a rig that is none is told before other programs are started with it
     measure, show = measures[what]
     found = {"schema": "gearheat.bench/1", **measure()}
     answer(found, json, lambda: show(found))

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import gearheat as gh
 
 from ..show import console
+from ..show.endings import fitting
 from ..show.notes import print_unchecked
 from .solve import print_run
 
@@ -74,6 +75,7 @@ def page(
     json: str | None = None,
 ) -> None:
     """Write the machine as one HTML file that computes in any browser, without a server or a network."""
+    fitting(out, "a page")
     console.writable(out, console.file_of(json))
     made = gh.page(rig, set=set_ or [], more=with_ or [], limit=limit, data=data, extended=extended or ())
     made.save(out)
@@ -92,6 +94,7 @@ def play(
     json: str | None = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
+    fitting(out, "a table")
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)

@@ -11,6 +11,7 @@ import gearheat as gh
 from ...model.errors import ScenarioError
 from ..show import console
 from ..show.display import Display
+from ..show.endings import fitting
 from ..show.notes import print_outside
 
 #: What is said where a machine runs against what its rig is meant for.
@@ -45,6 +46,7 @@ def simulate(
     json: str | None = None,
 ) -> None:
     """Temperatures and losses over a duty cycle."""
+    fitting(out, "a table")
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     run = gh.simulate(rig, duty, set_ or [])
@@ -125,6 +127,7 @@ def map_(
     json: str | None = None,
 ) -> None:
     """Oil temperature, loss and efficiency over speed and torque: table and picture."""
+    fitting(out, "a table")
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
@@ -146,6 +149,7 @@ def rating(
     json: str | None = None,
 ) -> None:
     """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
+    fitting(out, "a table")
     console.writable(out, live, console.file_of(json))
     powers = gh.rating(rig, limit, room=room, speed=speed, grid=grid, set=set_ or [])
     if out is not None:

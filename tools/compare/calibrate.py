@@ -126,6 +126,8 @@ def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
         with problems:
             if flat.locate(name)[0] != "parameter":
                 problems.append(f"{name} is no parameter and cannot be fitted. `gearheat show` lists the parameters.")
+            elif flat.quantity(name).whole:
+                problems.append(f"{name} is a whole number and cannot be fitted. Free a size.")
     if len(set(free)) < len(free):
         problems.append("A parameter is free twice. Name each once.")
     problems.check()

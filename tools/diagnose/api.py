@@ -365,7 +365,7 @@ def card(
         problems += too_small(read_campaign(path, scenario, whole))
     header, rows = read_cells(path)
     reads = {name: sensor.reads for name, sensor in wanted_sensors(scenario).items()}
-    reads |= {name: text for name, (text, _, _) in CONTEXT.items()}
+    reads |= {name: text for name, (text, *_) in CONTEXT.items()}
     cells = (header, *(row for _, row in rows[:SHOWN]))
     return CardText(scenario.name, whole, guessed.columns, cells, tuple(problems), reads)
 

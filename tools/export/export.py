@@ -97,10 +97,14 @@ def export(
     return export_system(ssp, asked) if ssp else export_rig(asked)
 
 
+#: Longest step of a task in real time [s].
+LONGEST_STEP = 60.0
+
+
 def _task(text: str) -> float:
     step = to_si(text, "s", name="--real-time")
-    if not step > 0:
-        raise ScenarioError(f"--real-time {text}: must be above 0.")
+    if not 0 < step <= LONGEST_STEP:
+        raise ScenarioError(f"--real-time {text}: must be above 0 and at most {LONGEST_STEP:g} s.")
     return step
 
 

@@ -27,6 +27,7 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Answer
+from ..show.endings import fitting
 from ..show.network import network_svg
 from ..solve.sampling import collect_uncertain
 from ..solve.settings import Drive, adjust, drive_at, find_unchecked, flat_of
@@ -110,6 +111,7 @@ def export_rig(asked: Asked) -> Exported:
         )
     if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
         raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
+    fitting(asked.out, "an FMU")
     writable(asked.out)
     lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)

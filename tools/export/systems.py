@@ -23,6 +23,7 @@ from ...model.machines.apart import Pieces, cut_machine
 from ...model.run.rows import evaluate_at
 from ...scenarios.scenario import Scenario
 from ..show.console import lasting, progress_bar, writable
+from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import first_of
 from .fmu import Asked, Exported, write_fmu
@@ -35,6 +36,7 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
         groups: parts of each FMU, "NAME=PART,PART"
         asked: the options of an export
     """
+    fitting(asked.out, "an FMU")
     writable(asked.out)
     lasting(asked.out)
     if asked.out.suffix.lower() == ".fmu":

@@ -151,9 +151,15 @@ def _rows_of(mesh: Mapping[str, Any]) -> list[tuple[Any, ...]]:
     return [(doc, *(column.get(key) for column in columns)) for key, doc in ROWS.items()]
 
 
+#: Largest factor on the load of flanks.
+MOST_FACTOR = 100.0
+
+
 def _check_options(load_factor: float, scuffing_stage: int, micropitting_stage: int) -> None:
     """Raises ScenarioError for options out of their range."""
     test, problems = MicropittingTest(), Problems()
+    if load_factor > MOST_FACTOR:
+        problems.append(f"--load-factor {load_factor:g}: give a factor of at most {MOST_FACTOR:g}, 1.25 for example.")
     if not load_factor > 0:
         problems.append(f"--load-factor {load_factor:g}: give a factor above 0, 1.25 for example.")
     for option, stage, first, last in (

@@ -174,6 +174,11 @@ def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assig
     for text in targets:
         with problems:
             aims.append(_target(flat, text))
+    limited = [(aim.name, sign) for aim in aims for sign in (aim.sign, *(("<", ">") if aim.sign == "=" else ()))]
+    twice = {name for name, sign in limited if limited.count((name, sign)) > 1}
+    problems += [
+        f"--target: {name} is to be two things at once. Give it one value, or a range." for name in sorted(twice)
+    ]
     for name in free:
         with problems:
             flat.locate(name)

@@ -22,6 +22,7 @@ from ...model.machines.roles import Roles
 from ...model.units import from_si, show_unit, to_si
 from ...scenarios.nuisances import nuisances
 from ...scenarios.scenario import Scenario
+from ...scenarios.values import in_range
 from .steady import leading_outputs
 
 #: Rows of the largest sweep that is not taken for a slip of the keyboard.
@@ -127,8 +128,8 @@ def _axis(w: Written, quantity: Quantity) -> Axis:
             raise ScenarioError(f"{where}: the deviation {w.second} is not above 0. Give a larger one.")
     elif not second > first:
         raise ScenarioError(f"{where}: {w.first} is not below {w.second}. Write LOW..HIGH.")
-    ends = (first,) if w.kind == "normal" else (first, second)
-    Problems(f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None).check()
+    for text in (w.first,) if w.kind == "normal" else (w.first, w.second):
+        in_range("--vary ", text, quantity)
     return Axis(w.name, w.kind, first, second)
 
 

@@ -20,7 +20,7 @@ from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate
 from ...model.run.steady import steady
 from ...model.units import to_si
-from ...scenarios.duty import duty_names, read_duty
+from ...scenarios.duty import LATEST, YEAR, duty_names, read_duty
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from . import sampling
@@ -32,6 +32,8 @@ from .sweep_rows import SUFFIXES, TELLING, Column, Job
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}
+#: Output times of a warm-up.
+MOST_TIMES = 1_000_000
 #: Quantities that a picture can be drawn over.
 MOST_DRAWN = 2
 #: Outputs that a picture shows of a rig without oil, body and efficiency.
@@ -193,6 +195,8 @@ def _problems(request: Request) -> Problems:
         found.append(f"--plot draws over one or two quantities; {len(request.vary)} are varied. Vary fewer.")
     if (request.sample is None) == (request.grid is None):
         found.append("Give the number of rows either by --sample N or by --grid NxM.")
+    if request.method not in ("lhs", "monte-carlo"):
+        found.append(f'--method {request.method} is not known. Choose "lhs" or "monte-carlo".')
     timed = [option for option in ("duty", "duration", "every") if getattr(request, option) is not None]
     if request.kind == "steady" and timed:
         found.append(f"--{timed[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
@@ -223,8 +227,11 @@ def _job(request: Request, scenario: Scenario, flat: FlatModel, varied: tuple[st
         schedule = read_duty(request.duty, flat)
     else:
         duration = to_si(request.duration, "s", name="--duration")
-        if not duration > 0:
-            raise ScenarioError(f"--duration {request.duration} is not above 0. Give a time such as 330 min.")
+        if not 0 < duration <= LATEST:
+            raise ScenarioError(
+                f"--duration {request.duration} is not above 0 and below {LATEST / YEAR:g} years. Give a time such as"
+                " 330 min."
+            )
         schedule = Schedule(np.array([0.0, duration]), {})
     start: dict[str, float | str] = {**first_temperatures(scenario, flat, schedule)}
     if scenario.room in varied:  # a machine that nothing is said about starts at the temperature of its room
@@ -241,5 +248,7 @@ def _times(request: Request, schedule: Schedule) -> tuple[float, ...]:
     if not every > 0:
         raise ScenarioError(f"--every {request.every} is not above 0. Give a time such as 10 min.")
     length = schedule.stop - schedule.start
+    if length / every > MOST_TIMES:
+        raise ScenarioError(f"--every {request.every}: {length / every:.3g} times a row. Give at most {MOST_TIMES}.")
     inside = schedule.start + every * np.arange(int(np.ceil(length / every * (1 - 1e-12))))
     return (*map(float, inside), schedule.stop)

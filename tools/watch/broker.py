@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ...model.errors import DataError
-from ...scenarios.measured.logs import find_time
+from ...scenarios.measured.logs import find_times
 from .sources import MACHINE, POLL, Row
 
 #: Beginnings of addresses, and the port of each.
@@ -115,7 +115,7 @@ class Broker:
             cells = json.loads(text)
         except ValueError:
             cells = None
-        if not isinstance(cells, dict) or not find_time(cells):
+        if not isinstance(cells, dict) or not find_times(cells):
             wanted = '{"time_utc": ..., COLUMN: ...}, or in the topic of a column {"time_utc": ..., "value": ...}'
             return Row(last, {}, where, problem=f'{where}: "{text[:60]}" is no sample; expected {wanted}')
         if VALUE in cells:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
-from ...scenarios.measured.logs import NUMBERS, find_time, parse_number, parse_time
+from ...scenarios.measured.logs import NUMBERS, find_times, parse_number, parse_time
 from ...scenarios.measured.table import Sensor
 from ..diagnose.request import Request
 from .sources import Row, Source
@@ -114,7 +114,7 @@ class Watch:
 
     def _time(self, row: Row) -> tuple[float, str]:
         """Time [s] and kind of time of a row."""
-        column = find_time(row.cells)
+        column = next(iter(find_times(row.cells)), "")
         try:
             time, kind = parse_time(row.cells[column])
         except (KeyError, TypeError, ValueError, OverflowError):

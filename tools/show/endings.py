@@ -1,0 +1,50 @@
+"""Names of files whose endings say another kind of file than is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...model.errors import DataError
+
+#: Endings of names of files by what is written.
+ENDINGS = {
+    "a table": (".csv", ".txt", ".dat", ""),
+    "an FMU": (".fmu", ".ssp", ".zip", ""),
+    "a page": (".html", ".htm", ""),
+}
+#: Endings that tell another kind of file than these.
+KNOWN = frozenset(
+    [
+        ".csv",
+        ".txt",
+        ".xlsx",
+        ".ods",
+        ".parquet",
+        ".json",
+        ".toml",
+        ".fmu",
+        ".ssp",
+        ".html",
+        ".svg",
+        ".png",
+        ".pdf",
+        ".md",
+        ".py",
+        ".gz",
+        ".zip",
+    ]
+)
+
+
+def fitting(path: Path | None, kind: str) -> None:
+    """Refuse a name that says another kind of file than is written.
+
+    Args:
+        path: where it goes
+        kind: what is written, a key of `ENDINGS`
+
+    Raises:
+        DataError: its ending is that of something else
+    """
+    if path is not None and (ending := path.suffix.lower()) in KNOWN and ending not in ENDINGS[kind]:
+        raise DataError(f"-o {path}: {kind} is written, and {ending} is something else. Name it *{ENDINGS[kind][0]}.")
