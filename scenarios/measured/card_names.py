@@ -28,8 +28,11 @@ def misnamed(
     """
     usual = {i.column for i in scenario.instruments or default_instruments(scenario)} | {*CONTEXT}
     header = [*header, *(split_unit(column)[0] for column in header)]
+    read = {s.name: s.column for s in declared if s.role == "read"}
+    free = set(header) - usual - set(read.values())
     for key, column in card.columns.items():
-        if column not in header and column not in usual:
+        # one table of a card may lack what another has: what is compared may be missing, but not misspelt
+        if column not in header and column not in usual and (key not in read or suggestion(column, free)):
             yield f'{card.name} columns.{key}: {name} has no column "{column}".{suggestion(column, header)}'
     known = {*usual, *header, *(s.name for s in declared), *(s.column for s in declared)}
     for column, unit in card.units.items():

@@ -15,12 +15,12 @@ ZERO = 273.15
 WARM = 10.0
 #: Rows that are all zero before they are taken for none.
 LEAST = 4
-#: A given value is alone where it is this many times the next,
-ALONE = 3.0
-#: in a table of at least so many rows,
+#: Rooms of a campaign are those of one hall where they are within this: a climate chamber is set to 0 degC, too [K].
+HALL = 15.0
+#: A given value is alone where it is this many times all others: a digit too many, not an overload.
+ALONE = 8.0
+#: In a table of at least so many rows.
 ROWS = 20
-#: and at most in this share of them.
-SHARE = 0.05
 
 
 def placeholders(
@@ -36,9 +36,12 @@ def placeholders(
     """
     for sensor in sensors:
         column = values[sensor.name]
-        if SI[sensor.kind] == "K" and (row := _zero(column)) is not None:
+        if SI[sensor.kind] == "K" and (row := _zero(column, HALL if sensor.role == "given" else np.inf)) is not None:
             said = "is 0 degC, and no other reading is near it" if (column != ZERO).any() else "is 0 degC in all rows"
-            yield f"{name} line {lines[row]}: {sensor.column} {said}. Leave a cell empty where nothing was read."
+            yield (
+                f"{name} line {lines[row]}: {sensor.column} {said}. Leave a cell empty where nothing was read, and"
+                " write 0.01 where it was so cold."
+            )
         elif sensor.role == "given" and sensor.kind in ("torque", "speed") and (row := _alone(column)) is not None:
             yield (
                 f"{name} line {lines[row]}: {sensor.column} is more than {ALONE:g} times what it is in all other rows."
@@ -46,20 +49,22 @@ def placeholders(
             )
 
 
-def _zero(column: np.ndarray) -> int | None:
-    """The first row (n,) with a zero that is none; None without."""
+def _zero(column: np.ndarray, range_: float) -> int | None:
+    """The first row (n,) with a zero that is none, where all others are within a range [K]; None without."""
     known = column[np.isfinite(column)]
     others = known[known != ZERO]
     few = len(others) == 0 and len(known) < LEAST
-    if len(others) == len(known) or few or (len(others) and np.abs(others - ZERO).min() < WARM):
+    if len(others) == len(known) or few:
+        return None
+    if len(others) and (np.abs(others - ZERO).min() < WARM or np.ptp(others) > range_):
         return None
     return int(np.flatnonzero(column == ZERO)[0])
 
 
 def _alone(column: np.ndarray) -> int | None:
     """The row (n,) of the largest size where it is far beyond all others; None without."""
-    size = np.abs(column[np.isfinite(column)])
-    if len(size) < ROWS or not (largest := size.max()) > 0:
+    size = np.abs(column)
+    known = np.sort(size[np.isfinite(size)])
+    if len(known) < ROWS or not known[-1] > ALONE * known[-2] > 0:
         return None
-    far = size > largest / ALONE
-    return int(np.nanargmax(np.abs(column))) if far.sum() <= max(1, SHARE * len(size)) and (~far).any() else None
+    return int(np.nanargmax(size))
