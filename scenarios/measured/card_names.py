@@ -13,6 +13,9 @@ from .card import Card
 from .sensors import CONTEXT, default_instruments
 from .table import Sensor
 
+#: Quantities for whose columns a card may say units, which the columns' own names say again.
+QUANTITIES = frozenset({"T", "torque", "speed", "time", "power"})
+
 
 def misnamed(
     scenario: Scenario, card: Card, declared: Sequence[Sensor], header: Sequence[str], name: str
@@ -38,7 +41,8 @@ def misnamed(
     for column, unit in card.units.items():
         said = split_unit(column)[1]
         if column not in known:
-            yield f'{card.name} units: {name} has no column "{column}".{suggestion(column, header)}'
+            if column not in QUANTITIES and suggestion(column, header):
+                yield f'{card.name} units: {name} has no column "{column}".{suggestion(column, header)}'
         elif said and column in header and spell_unit(unit) not in ("", said):
             yield (
                 f'{card.name} units.{column} = "{unit}": the name of the column says {said}. Rename the column, or take'
