@@ -38,7 +38,7 @@ def test_values_that_cannot_be_are_refused_by_name(gearheat, rig: str, assignmen
 
 def test_an_efficiency_that_a_sweep_takes_out_of_its_range_is_refused(gearheat, tmp_path) -> None:
     answer = gearheat("sweep", RIGS[0], "--vary", "motor.eta=0.5..1.5", "--grid", "5", "-o", tmp_path / "s.csv")
-    assert answer.code == 2 and "motor.eta = 1.5" in answer.err
+    assert answer.code == 2 and 'motor.eta = "1.5"' in answer.err
 
 
 @pytest.mark.parametrize(

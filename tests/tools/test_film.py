@@ -90,7 +90,7 @@ def test_a_part_of_a_rig_tells_its_contact():
     ("old", "new", "says"),
     [
         ('F = "1000..4000 N"', "", "F is missing (normal force)"),
-        ('F = "1000..4000 N"', 'F = "0..4000 N"', "F = 0 N is out of range"),
+        ('F = "1000..4000 N"', 'F = "0..4000 N"', 'F = "0 N" is out of range'),
         ('R_x = "10 mm"', 'R_x = "0 mm"', "R_x = 0 is out of range"),
         ('R_x = "10 mm"', "R_x = 10", "R_x = 10 has no unit"),
         ('R_x = "10 mm"', 'R_z = "10 mm"', 'unknown key "R_z"'),
