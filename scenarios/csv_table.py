@@ -31,7 +31,6 @@ _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
 #: A number whose point or comma may separate thousands, and one where it separates decimals.
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
 _DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?")
-_DIGITS = re.compile(r"[+-]?[0.]*[1-9]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
@@ -184,8 +183,12 @@ def numbers(cells: Sequence[str]) -> np.ndarray | None:
     if not all(map(_NUMBER.fullmatch, cells)):
         return None
     found = np.fromiter(map(float, cells), float, len(cells))
-    nothing = {cell for cell, value in zip(cells, found, strict=True) if value == 0.0}
-    return found if np.isfinite(found).all() and not any(map(_DIGITS.match, nothing)) else None
+    try:
+        for cell in {cells[int(k)] for k in np.flatnonzero(found == 0.0)}:
+            parse_number(cell)
+    except ValueError:  # one is too small to be held
+        return None
+    return found if np.isfinite(found).all() else None
 
 
 def number(cell: str) -> float:

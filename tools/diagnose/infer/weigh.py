@@ -215,24 +215,24 @@ class Weighing:
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
         for start, logs in self._promising(look, set(), n, wanted):
             for aside in dict.fromkeys((self.problem.aside, self.whole.aside)):
-                key = (frozenset[Formula](), frozenset[str](), aside)
-                self._fit_joined(near, self.whole.without(aside), start, key, {start.acting.id: logs})
+                beside = (frozenset[str](), aside)
+                self._fit_joined(near, self.whole.without(aside), start, beside, {start.acting.id: logs})
 
     def _fit_joined(
         self,
         near: Fit,
         problem: Problem,
         start: Start,
-        key: Key,
+        beside: tuple[frozenset[str], frozenset[Aside]],
         forms: Mapping[str, Mapping[str, float]],
         extras: tuple[Extra, ...] = (),
     ) -> None:
-        """Fits a cause joined to what acts in a fit; key is as of the hypothesis, whatever its forms."""
+        """Fits a cause joined to what acts in a fit, beside terms that scatter and readings that are gross."""
         z, kept = near.moved(problem, start.effect)
         acting = [*kept, start.acting]
         with suppress(SolveError):
             fit = fitted(problem, acting, z, near.noise.scales)
-            self._keep((frozenset(a.formula for a in acting), *key[1:]), fit, extras, forms)
+            self._keep((frozenset(a.formula for a in acting), *beside), fit, extras, forms)
 
     def _promising(
         self, look: screen.Look, taken: Set[str], n: int, wanted: Collection[str] = ()
@@ -270,7 +270,7 @@ class Weighing:
                 taken = {a.id, *(b.formula.cause.family for b in rest)}
                 for start, logs in self._promising(look, taken, EXCHANGED):
                     forms = {c: known for c, known in best.forms.items() if c != a.id} | {start.acting.id: logs}
-                    self._fit_joined(near, problem, start, key, forms, best.extras)
+                    self._fit_joined(near, problem, start, key[1:], forms, best.extras)
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
