@@ -95,7 +95,7 @@ def test_the_report_is_one_file_that_needs_no_other(ran):
     assert page.count("<svg") == 5
     assert "<link" not in page and 'src="' not in page
     assert "The simulation is this close to 8 readings" in page and "It is worst for the" in page
-    assert "gearheat diagnose planetary names its causes" in page and "not built yet" in page
+    assert "gearheat diagnose TABLE --rig planetary names the causes" in page and "not built yet" in page
     assert page.index("noise floor") < page.index("Regressions on the readings")
     assert "test 13, PAOR" in page and page.count("<figcaption>") == 5
 
