@@ -16,6 +16,8 @@ from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3
+#: Steps between the ticks of the abscissa, at most: long numbers have room.
+TICKS = 5
 #: Contours of a panel.
 LEVELS = 9
 #: Points that a page holds of a course or a panel, at most.
@@ -92,6 +94,7 @@ def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture
     for panel, one in zip(panels, drawn, strict=False):
         (_lines if len(over) == 1 else _contours)(panel, over, one)
         panel.set(title=one.title, xlabel=over[0].title)
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     for panel in panels[len(drawn) :]:
         panel.set_visible(False)
     marks = marks_on(
