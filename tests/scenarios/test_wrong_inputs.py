@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 import wrong_inputs
 from gearheat.model.errors import GearheatError
+from gearheat.scenarios.ranges import override
 from wrong_inputs.readers import READERS
 
 TABLES = Path(wrong_inputs.__file__).parent
@@ -31,6 +32,20 @@ def test_wrong_inputs_of_a_kind(kind: str, tmp_path: Path) -> None:
             taken.append(line)
     assert not taken
     assert not unsaid
+
+
+def test_an_override_takes_sizes_and_nothing_else(tmp_path: Path) -> None:
+    """What is refused for any other reason than its size is refused all the same."""
+    taken = []
+    with override():
+        for line, part in list(lines("set").items())[::4]:
+            try:
+                READERS["set"](tmp_path, line)
+                taken.append((line, part))
+            except GearheatError as error:
+                assert "--override" not in str(error)
+    assert taken
+    assert all(part.endswith("--override.") for _, part in taken), taken
 
 
 def test_there_are_enough_of_each_kind() -> None:

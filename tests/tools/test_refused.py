@@ -64,6 +64,15 @@ def test_what_the_duty_gives_cannot_be_set(gearheat, fmu, duty, tmp_path, text):
         (("cooling.A=-1 m2",), "out of range"),
         (("foot.G=nan W/K",), "not finite"),
         (("oil.T=1e9 degC",), "out of range"),
+        (("oil.T=25",), "has no unit"),
+        (("oil.T=25 K",), "out of range"),
+        (("oil.T=nan degC",), "is not finite"),
+        (("oil.V=0 l",), "out of range"),
+        (("oil.V=1 m2",), "does not fit"),
+        (("oil.P=1 W",), "oil.P"),
+        (("gear_set.P_loss_sp=1 W",), "gear_set.P_loss_sp"),
+        (("oil.V",), "oil.V"),
+        (("oil=nope",), "cannot be set"),
     ],
 )
 def test_what_is_set_of_an_fmu(gearheat, fmu, duty, tmp_path, texts, words):

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from gearheat.scenarios.duty import read_duty
 from gearheat.scenarios.load import RIGS, load
@@ -15,6 +16,7 @@ from gearheat.scenarios.measured.logs import read_log
 from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.export.export import export
 from gearheat.tools.solve.settings import adjust
 from gearheat.tools.solve.sweep_plan import Request, plan_sweep
 
@@ -95,9 +97,17 @@ def read_with_card(folder: Path, line: str) -> None:
     read_campaign(written(folder, "table.csv", readings()), rig(), card)
 
 
+def to_export(folder: Path, line: str) -> None:
+    """Options as "NAME=VALUE", apart by "; "; several values of one by "&"."""
+    options: dict[str, Any] = {"platform": "host"} | dict(one.split("=", 1) for one in line.split("; "))
+    options |= {name: options[name].split("&") for name in ("set", "constant", "ssp") if name in options}
+    export("planetary", folder / options.pop("out", "rig.fmu"), **options)
+
+
 READERS: dict[str, Callable[[Path, str], object]] = {
     "set": lambda folder, line: adjust(rig(), [line]),
     "vary": lambda folder, line: plan_sweep(Request("planetary", [line], sample=4)),
+    "export": to_export,
     "duty": lambda folder, line: read_duty(written(folder, "duty.csv", unescaped(line)), rig().inputs()),
     "rig": read_rig,
     "card": read_with_card,

@@ -75,7 +75,7 @@ class Asked:
     def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
         scenario = scenario_of(self.rig)
-        asked = self.drive is not None or self.given == "torque"
+        asked = self.drive is not None or self.given != "speed"
         drive: Drive | None = drive_at(scenario, self.drive, self.given) if asked else None
         setting = adjust(scenario, self.assignments, drive=drive)
         flat = flat_of(setting)

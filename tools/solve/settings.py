@@ -97,8 +97,10 @@ def drive_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tup
         given: "speed": speed and torque of that shaft; "torque": the torques of all shaft ends
 
     Raises:
-        ScenarioError: the rig has no such shaft end
+        ScenarioError: the rig has no such shaft end, neither is given
     """
+    if given not in ("speed", "torque"):
+        raise ScenarioError(f'given = "{given}" is neither "speed" nor "torque". Give one of them.')
     ends = scenario.spec.of_type("ShaftEnd")
     if shaft is not None and shaft not in ends:
         raise ScenarioError(
