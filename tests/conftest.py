@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import gc
+import os
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,8 @@ LONGEST = (
     "laws/test_sweeps.py",
     "fmu/test_batch.py",
 )
+#: FMUs of tests run little: their code is compiled as it stands. That it gives the same digits has a test.
+os.environ.setdefault("GEARHEAT_COMPILE", "quick")
 #: New objects after which the collector of cycles looks through them, 700 by default: texts of C and expressions are
 #: millions of objects, few of them in cycles.
 LOOK_AFTER = 50_000
