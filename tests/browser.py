@@ -26,10 +26,10 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", 
 class Browser:
     """A page in a browser without a screen; a context that ends it."""
 
-    def __init__(self, folder: Path, width: int = 1280, height: int = 900) -> None:
+    def __init__(self, folder: Path) -> None:
         client = pytest.importorskip("websockets.sync.client", reason="websockets drive the browser")
         options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--hide-scrollbars"]
-        options += [f"--user-data-dir={folder}", f"--window-size={width},{height}", "about:blank"]
+        options += [f"--user-data-dir={folder}", "--window-size=1280,900", "about:blank"]
         self.process = subprocess.Popen([CHROMIUM, *options], stderr=subprocess.PIPE, text=True)
         assert self.process.stderr
         found = next(m for line in self.process.stderr if (m := re.search(r"ws://([^/]*)/", line)))
@@ -59,6 +59,10 @@ class Browser:
     def open(self, address: str) -> None:
         """Go to an address."""
         self.call("Page.navigate", url=address)
+
+    def wide(self, width: int, height: int = 900) -> None:
+        """Show the next page in so many pixels."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
     def js(self, code: str) -> Any:
         """The value of an expression of JavaScript."""

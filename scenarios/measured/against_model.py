@@ -28,6 +28,9 @@ RISE_FACTOR = 5.0
 SMALL_RISE = 2.0
 #: Nor does one that is nearer to the model's than this [K]: probes err so much.
 PROBE_ERROR = 5.0
+#: A machine slower than this share of its operating speed is at rest, and warm of what was before; rev/s that are taken
+#: for rpm are 1/60.
+AT_REST = 0.01
 #: Rows that are held against the nominal model.
 SAMPLED = 6
 #: A temperature this much further over the room than the model's, at most by `RISE_FACTOR`, may be in degF,
@@ -66,7 +69,8 @@ def against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[
         nominal: its rig
         oils: name of each of its oils -> values by path
     """
-    rows = np.unique(np.linspace(0, campaign.n - 1, SAMPLED).round().astype(int))
+    turning = np.flatnonzero(_turns(campaign, nominal))
+    rows = np.unique(turning[np.linspace(0, len(turning) - 1, min(SAMPLED, len(turning))).round().astype(int)])
     given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
     inputs = {row: {path: float(values[row]) for path, values in given.items()} for row in rows}
     states = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **inputs[row]}) for row in rows}
@@ -84,6 +88,13 @@ def against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[
             yield from _torque(campaign, nominal, sensor, pairs)
         elif pairs and sensor.kind.endswith("_temp"):
             yield from _rise(campaign, sensor, pairs)
+
+
+def _turns(campaign: Campaign, nominal: Nominal) -> np.ndarray:
+    """Whether the machine turns in each row (n,), as far as its speeds are known."""
+    speeds = [s for s in campaign.given if s.kind == "speed"]
+    shares = [np.abs(campaign.values[s.name] / nominal.value(s.reads)) for s in speeds]
+    return np.any([~(share < AT_REST) for share in shares], axis=0) if shares else np.ones(campaign.n, dtype=bool)
 
 
 def _constant(campaign: Campaign, sensor: Sensor, model: Sequence[float]) -> Iterator[str]:

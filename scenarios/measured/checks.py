@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.units import text
 from ..csv_table import raise_all
-from .against_model import LEAST_TESTS, Oils, against_model, format_value, place
+from .against_model import AT_REST, LEAST_TESTS, Oils, against_model, format_value, place
 from .nominal import Nominal, efficiency, shaft_powers
 from .placeholders import placeholders
 from .sensors import ACCURACY, SI
@@ -179,15 +179,25 @@ def _twice(campaign: Campaign, *, same_test: bool) -> Iterator[str]:
 
 def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Given speeds and torques of another order than the rig's operating point."""
-    for sensor in (s for s in campaign.given if s.kind in ("torque", "speed", "power")):
-        usual = abs(nominal.value(sensor.reads))
-        largest = _size(campaign, sensor)
-        if not usual > 0 or usual / FAR <= largest <= usual * FAR:
+    driven = [s for s in campaign.given if s.kind in ("torque", "speed", "power") and abs(nominal.value(s.reads)) > 0]
+    share = {s: _size(campaign, s) / abs(nominal.value(s.reads)) for s in driven}
+    speed = next((s for s in driven if s.kind == "speed"), None)
+    if speed and share[speed] < AT_REST and all(one < 1 / FAR for one in share.values()):
+        yield (
+            f"{campaign.name}: the machine stands still, {speed.column} is at most"
+            f" {format_value(speed, _size(campaign, speed))}, the rig runs at"
+            f" {format_value(speed, abs(nominal.value(speed.reads)))}. Give what is read of a machine that runs, or"
+            f" check its unit, which is taken for {speed.unit}."
+        )
+        return
+    for sensor in driven:
+        if 1 / FAR <= share[sensor] <= FAR:
             continue
         row = int(np.nanargmax(np.abs(campaign.values[sensor.name])))
         yield (
-            f"{place(campaign, row)}: {sensor.column} is at most {format_value(sensor, largest)}, the rig runs at"
-            f" {format_value(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
+            f"{place(campaign, row)}: {sensor.column} is at most {format_value(sensor, _size(campaign, sensor))}, the"
+            f" rig runs at {format_value(sensor, abs(nominal.value(sensor.reads)))}. Check its unit, which is taken for"
+            f" {sensor.unit}."
         )
 
 

@@ -56,8 +56,7 @@ def test_the_site_has_a_page_for_every_part(site: tuple[Path, str]) -> None:
 @pytest.mark.parametrize("width", [360, 800, 1400])
 def test_pages_stay_within_their_screens(site: tuple[Path, str], width: int, tmp_path: Path) -> None:
     with Browser(tmp_path) as browser:
-        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
-        browser.call("Emulation.setDeviceMetricsOverride", **size)
+        browser.wide(width)
         for name in SHOWN:
             browser.open((site[0] / f"{name}.html").as_uri())
             browser.wait(f"document.readyState === 'complete' && location.href.endsWith('{name}.html')")

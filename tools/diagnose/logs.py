@@ -113,12 +113,19 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     return composed(inputs, known, asked, data, progress)
 
 
+def formulas_of(known: Fleet, log: Log) -> tuple[Formula, ...]:
+    """Forms of all causes that logs with the sensors of one can show."""
+    names, read = [s.name for s in log.sensors], [s.name for s in log.read]
+    return tuple(Formula(cause, form, names, read) for cause in moves(known.knobs) for form in cause.forms)
+
+
 def judged(
     inputs: Inputs,
     known: Fleet,
     asked: Question,
     logs: Logs,
     progress: Progress = lambda stage, share: None,
+    formulas: Sequence[Formula] = (),
 ) -> LogDiagnosis:
     """The answer without pictures, gain and words, from what healthy logs and those in question say.
 
@@ -128,13 +135,13 @@ def judged(
         asked: what the logs in question say
         logs: as they were read
         progress: called with (stage, fraction done)
+        formulas: those of `formulas_of`, where they are there
     """
     request, problem = inputs.request, problem_of(known, asked, logs.logs)
-    data, causes = problem.data, moves(known.knobs)
-    names, read = [s.name for s in data.campaign.sensors], [s.name for s in data.read]
-    formulas = tuple(Formula(cause, form, names, read) for cause in causes for form in cause.forms)
+    formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
+    causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
     scenario = inputs.scenario
-    made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, data.plant, problem, {})
+    made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, problem.data.plant, problem, {})
     options = Options(request.alpha, request.seed, request.causes)
     found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)

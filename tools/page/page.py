@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -124,7 +124,7 @@ def page(
     )
     size = len(html.encode())
     if size > LARGEST:
-        raise DataError(f"{first.name}: the page has {size / 1e6:.1f} MB, at most {LARGEST / 1e6:.0f} MB are sensible.")
+        raise DataError(_too_large(shown, size))
     found = {
         "schema": "gearheat.page/1",
         "rig": first.name,
@@ -137,6 +137,16 @@ def page(
     }
     rows = ("field", "unit"), [(field["name"], field["unit"]) for field in machines[0]["fields"]]
     return Page(found, html, heading=f"{first.name}: page of {size / 1000:.0f} kB", shown=rows)
+
+
+def _too_large(shown: Mapping[str, Any], size: int) -> str:
+    """What makes a page too large, and what can be left out."""
+    parameters, held = len(shown["machines"][0]["parameters"]), sum(map(len, shown["modules"]))
+    return (
+        f"{shown['rig']}: a page has {size / 1e6:.2g} MB, mail and browsers bear {LARGEST / 1e6:.2g} MB at most."
+        f" {held / 1e6:.2g} MB are the model with its {parameters} parameters, for each machine anew. Leave out some of"
+        " --extended or --data; of a rig as large as that gearheat export writes an FMU."
+    )
 
 
 def _text(name: str) -> Markup:

@@ -14,7 +14,8 @@ from ..diagnose.answer import channels
 from ..diagnose.answer.findings import Cause
 from ..diagnose.infer.expect import expect
 from ..diagnose.infer.logs import Fleet, fleet, question
-from ..diagnose.logs import Logs, check, judged
+from ..diagnose.logs import Logs, check, formulas_of, judged
+from ..diagnose.model.formula import Formula
 from ..diagnose.report.phrases import name_of
 from ..diagnose.request import Inputs
 from .store import Cells
@@ -38,7 +39,7 @@ class Judge:
     inputs: Inputs
     reference: Sequence[Log] = ()
     siblings: Sequence[Log] = ()
-    _known: dict[tuple[str, ...], Fleet] = field(default_factory=dict)
+    _known: dict[tuple[str, ...], tuple[Fleet, tuple[Formula, ...]]] = field(default_factory=dict)
 
     def log(self, machine: str, kind: str, times: Sequence[float], rows: Sequence[Cells]) -> Log:
         """Samples as a log.
@@ -60,22 +61,24 @@ class Judge:
             columns["time_utc"] = [datetime.fromtimestamp(t, UTC) for t in times]
         return log_of(machine, columns, np.arange(2, len(rows) + 2), self.inputs.scenario, self.inputs.card)
 
-    def known(self, log: Log) -> Fleet:
-        """What the healthy logs say of the machine of a log and its type."""
+    def known(self, log: Log) -> tuple[Fleet, tuple[Formula, ...]]:
+        """What the healthy logs say of the machine of a log and its type, and what it can show; read once."""
         names = tuple(s.name for s in log.sensors)
         if names not in self._known:
-            self._known[names] = fleet(self.inputs.scenario, self.reference, self.siblings, log)
+            found = fleet(self.inputs.scenario, self.reference, self.siblings, log)
+            self._known[names] = found, formulas_of(found, log)
         of = next((1 + k for k, s in enumerate(self.siblings) if s.name.split(".")[0] == log.name), 0)
-        return self._known[names].of(of)
+        healthy, formulas = self._known[names]
+        return healthy.of(of), formulas
 
     def answer(self, machine: str, kind: str, times: Sequence[float], rows: Sequence[Cells]) -> dict[str, Any]:
         """What samples say: temperatures of their last window, and what has changed; as `log`."""
         log = self.log(machine, kind, times, rows)
         data = Logs([log], self.reference, self.siblings)
         check(data)
-        known = self.known(log)
+        known, formulas = self.known(log)
         asked = question(known, data.logs)
-        found = judged(self.inputs, known, asked, data)
+        found = judged(self.inputs, known, asked, data, formulas=formulas)
         last = expect(known, asked.windows.some(np.array([asked.windows.time.argmax()])))
         temperatures = {}
         for j, s in enumerate(log.read):

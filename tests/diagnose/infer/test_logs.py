@@ -13,7 +13,7 @@ from gearheat.tools.diagnose.answer.findings import Findings
 from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.infer.expect import expect
 from gearheat.tools.diagnose.infer.logs import Fleet, filter_of, fleet, question
-from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed
+from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed, formulas_of
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.watch.judge import BAND, Judge
 from made_logs import MACHINES, YEARS, differing, made
@@ -142,7 +142,7 @@ def test_a_watch_says_of_a_log_what_the_diagnosis_says(farm: Farm, monkeypatch: 
     log = farm.third_year(*WORN)
     judge = Judge(Inputs(Request("wind_turbine"), farm.scenario, Card(), None, None, None))
     monkeypatch.setattr(judge, "log", lambda *said: log)
-    monkeypatch.setattr(judge, "known", lambda log: farm.fleet)
+    monkeypatch.setattr(judge, "known", lambda log: (farm.fleet, formulas_of(farm.fleet, log)))
     said = judge.answer("asked", "", [], [])
     assert said["changed"] == round(1 - told.findings.nothing, 4)
     assert said["causes"][0]["id"] == told.findings.causes[0].id == "cooling.cooler"

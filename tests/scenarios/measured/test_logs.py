@@ -115,10 +115,15 @@ def fahrenheit(head: str, rows: list[str]) -> tuple[str, list[str]]:
     return head, rows
 
 
+def at_rest(head: str, rows: list[str]) -> tuple[str, list[str]]:
+    return cells_of("T_hss_Nm", lambda _, k: -7)(*cells_of("n_hss_rpm", lambda _, k: k % 3)(head, rows))
+
+
 #: What may be wrong with a log -> the change that makes it so, and words of the answer.
 WRONG = {
     "torque in kN.m": (cells_of("T_hss_Nm", lambda c, _: float(c) / 1000), "T_hss_Nm is at most 3 N.m, the rig runs"),
     "speed in Hz": (cells_of("n_hss_rpm", lambda c, _: float(c) / 60), "n_hss_rpm is at most 25 rpm, the rig runs"),
+    "a machine at rest": (at_rest, "the machine stands still, n_hss_rpm is at most 1.2 rpm, the rig runs at 1800 rpm"),
     "speed in rad/s": (cells_of("n_hss_rpm", lambda c, _: float(c) / 9.55), "Check the units of what drives it"),
     "oil in degF": (cells_of("T_sump_C", lambda c, _: 1.8 * float(c) + 32), "T_sump_C .* In degF it would fit"),
     "all in degF": (fahrenheit, "Check its unit|Check the units of what drives it|In degF it would fit"),
@@ -149,6 +154,12 @@ def test_logs_are_checked_as_tables_are(tmp_path: Path, kind: str) -> None:
     head, rows = change(HEAD, lines())
     with pytest.raises(DataError, match=told):
         read(tmp_path / "a.csv", rows, head)
+
+
+def test_a_machine_that_has_stopped_is_still_warm(tmp_path: Path) -> None:
+    _, rows = cells_of("n_hss_rpm", lambda c, k: c if k < 15 else 0)(HEAD, lines())
+    log = read(tmp_path / "a.csv", rows)
+    assert log.n == 60
 
 
 def test_a_compressed_file_that_is_broken(tmp_path: Path) -> None:

@@ -1,10 +1,12 @@
 "use strict";
-const data = JSON.parse(document.getElementById("data").textContent);
+let data;
 const byId = (id) => document.getElementById(id);
 const STATUS = ["", "no steady state was found", "the only equilibrium found is one that the machine leaves by itself",
   "the model cannot be evaluated at the start", "the warm-up cannot go on: a state leaves its range",
   "a value is out of its range", "an implicit equation has no solution", "values contradict each other"];
-const TOLERANCE = 1e-4, POINTS = 240, GRID = 21, LONGEST = 1e7;
+const NEEDED = "Chromium 91, Firefox 113, Safari 16.4 or later, with WebAssembly switched on";
+const DAMAGED = "the file is damaged on its way. Copy it again, or write it anew with gearheat page";
+const TOLERANCE = 1e-4, POINTS = 240, GRID = 21, LONGEST = 1e7, LETTER = 7.5;
 
 const shown = (q, si) => (si - q.offset) / q.factor;
 const inSi = (q, value) => value * q.factor + q.offset;
@@ -87,10 +89,18 @@ class Machine {
   }
 }
 
-async function unpack(text) {
+/* What a step gives, or an error that says why the model does not run. */
+const reason = (step, why) => step.catch((error) => { throw new Error(why(error)); });
+
+async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const { instance } = await WebAssembly.instantiate(await new Response(stream).arrayBuffer(), {});
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
+async function unpack(text) {
+  if (!globalThis.WebAssembly || !globalThis.DecompressionStream) throw new Error(`this browser has no WebAssembly. It takes ${NEEDED}`);
+  const code = await reason(inflated(text), () => DAMAGED);
+  const { instance } = await reason(WebAssembly.instantiate(code, {}), (error) => `this browser refuses the module (${error.message}). It takes ${NEEDED}`);
   instance.exports._initialize?.();
   return instance;
 }
@@ -204,7 +214,9 @@ function drawFlows(now) {
         + `<text x="${label}" y="${from + Math.max(h, 12) / 2 + 4}" text-anchor="${anchor}">${escaped(name)} ${digits(v)} W</text>`;
     }).join("");
   });
-  place.innerHTML = `<svg viewBox="0 0 600 ${tall + 4}" role="img" aria-label="Heat flows: ${digits(totals[0])} W arise, ${digits(totals[1])} W leave">${
+  const longest = sides.map((side) => LETTER * Math.max(0, ...side.map(([name, v]) => `${name} ${digits(v)} W`.length)));
+  const left = Math.min(0, 164 - longest[0]), right = Math.max(600, 406 + longest[1]);
+  place.innerHTML = `<svg viewBox="${left} 0 ${right - left} ${tall + 4}" role="img" aria-label="Heat flows: ${digits(totals[0])} W arise, ${digits(totals[1])} W leave">${
     bands.join("")}<rect class="bar" x="270" width="40" y="${(tall - totals[0] * scale) / 2}" height="${totals[0] * scale}"/></svg>`;
 }
 
@@ -354,6 +366,7 @@ function update() {
 
 async function main() {
   const begun = performance.now();
+  data = await reason((async () => JSON.parse(byId("data").textContent))(), () => DAMAGED);
   const instances = await Promise.all(data.modules.map(unpack));
   machines = data.machines.map((about) => new Machine(instances[about.module], about));
   machine = machines[0];
@@ -374,5 +387,5 @@ async function main() {
 
 main().catch((error) => {
   byId("status").className = "wrong";
-  byId("status").textContent = `The model does not run in this browser (${error.message}). It needs WebAssembly with vectors: Chromium 91, Firefox 113 or Safari 16.4 or later.`;
+  byId("status").textContent = `The model does not run: ${error.message}.`;
 });
