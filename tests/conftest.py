@@ -18,7 +18,6 @@ LONGEST = (
     "fmu/test_duties.py",
     "tools/test_new.py",
     "diagnose/test_readings_and_logs.py",
-    "challenge/test_machines.py",
     "tools/test_docs.py",
     "tools/test_run.py",
     "diagnose/library/test_causes.py",
