@@ -59,7 +59,8 @@ _SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "
 #: rows side by side fill its vectors.
 WEB = Platform("wasm32", ".wasm", ("wasm32-wasi",))
 _WEB_CODE = ("-Os", "-DLANES=2", "-msimd128", "-g0", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off")
-_WEB_LINK = ("-std=c99", "-s", "-mexec-model=reactor", "-Wl,--export-dynamic,--export=malloc,--export=free")
+_WEB_EXPORTS = "-Wl,--export-dynamic,--export=malloc,--export=free,--export-table,--growable-table"
+_WEB_LINK = ("-std=c99", "-s", "-mexec-model=reactor", _WEB_EXPORTS)
 _WEB = (*_WEB_CODE, *_WEB_LINK)
 
 #: Compilers that run at once, whoever asks.
@@ -94,12 +95,14 @@ def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
     """
     names_of, own = (PLATFORMS, host_platform()) if fmi == 2 else (PLATFORMS_3, _host_of_3())
     if choice == "all":
-        return tuple(names_of.values())
+        return tuple(p for name, p in names_of.items() if "wasm" not in name)
     names = [own.name if name.strip() == "host" else name.strip() for name in choice.split(",")]
     if fmi == 3:
         names = [of_3 for name in names for of_3 in tables("platforms")["in_3"].get(name, (name,))]
     known = ("host", "all", *names_of)
     unknown = [n for n in names if n not in names_of]
+    if fmi == 2 and WEB.name in unknown:
+        raise FmuError(f'platform "{WEB.name}" is one of FMI 3.0. Add --fmi 3.')
     if unknown:
         raise FmuError(f'platform "{n}" is unknown.{suggestion(n, known)} Known: {", ".join(known)}.' for n in unknown)
     return tuple(names_of[n] for n in dict.fromkeys(names))
@@ -143,7 +146,7 @@ def binary(
     """
     windows = wrapper("windows.c")
     named = (platform.name, *platform.targets, *FLAGS, *_SYSTEM, version("ziglang"))
-    named += _WEB if platform == WEB else ()
+    named += _WEB if "wasm" in platform.name else ()
     for way in ways:
         key = hashlib.sha256()
         for part in (source, *headers.values(), windows, way, *named):

@@ -22,6 +22,8 @@ from .compiling import cache_folder, store
 
 #: Bytes that an FMU may unpack to: far above any FMU known, far below what fills a disk.
 MOST_BYTES = 1 << 30
+#: Folder of a module of WebAssembly with the functions of FMI 3.0.
+MODULE = "wasm32-wasip1"
 #: Files that an FMU may hold.
 MOST_FILES = 10_000
 
@@ -83,12 +85,14 @@ class Described:
         description: FMPy's reading of modelDescription.xml
         variables: the variables by name
         differences: names of the variables that are differences, which no offset of a unit must touch
+        web: whether its module of WebAssembly is what runs here
     """
 
     path: Path
     description: Any
     variables: Mapping[str, Any]
     differences: frozenset[str]
+    web: bool = False
 
     def quantities(self, *kinds: str) -> dict[str, Quantity]:
         """Variables that are real numbers, by name: "input", "start" (what may be set before the run), "output"."""
@@ -147,15 +151,16 @@ def describe(path: Path) -> Described:
         description = fmpy.read_model_description(str(path), validate=False)
         of_2 = version == "2.0"
         own, held = (fmpy.platform, fmpy.supported_platforms(str(path))) if of_2 else (fmpy.platform_tuple, folders)
+        web = not of_2 and own not in held and MODULE in held
     except FmuError:
         raise
     except FileNotFoundError:
         raise FmuError(f"{path}: there is no such file.") from None
     except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
         raise FmuError(f"{path}: this file is no FMU ({error}).") from error
-    if problem := _unplayable(description, own, sorted(held)):
+    if problem := _unplayable(description, MODULE if web else own, sorted(held)):
         raise FmuError(f"{path}: {problem}")
-    return Described(path, description, {v.name: v for v in description.modelVariables}, _differences(root))
+    return Described(path, description, {v.name: v for v in description.modelVariables}, _differences(root), web)
 
 
 def _unplayable(description: Any, here: str, held: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from ..model.errors import FmuError, suggestion
 from .described import Described, describe, is_real, is_whole, settable
 from .grid import Grid, Inputs, grid
 from .slave import Slave, Slave2, Slave3
+from .web_slave import WebSlave
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,8 @@ class Player:
         return Played(points.row_time, tuple(columns), values)
 
     def _instance(self) -> Slave:
-        kind = Slave2 if self._description.fmiVersion == "2.0" else Slave3
+        native = Slave2 if self._description.fmiVersion == "2.0" else Slave3
+        kind = WebSlave if self.described.web else native
         return kind(self._path, self._description, self._folder)
 
     def _list_recorded(self, record: Sequence[str] | None) -> list[str]:

@@ -13,7 +13,7 @@ LONGEST = (
     "static/test_readme.py",
     "diagnose/infer/test_logs.py",
     "fmu/test_operating_points.py",
-    "tools/test_every_rig.py",
+    "scenarios/test_relations_of_runs.py",
     "tools/test_export.py",
     "fmu/test_duties.py",
     "tools/test_new.py",

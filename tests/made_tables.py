@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from gearheat.model.units import from_si
 from gearheat.scenarios.measured.card import Card
-from gearheat.scenarios.measured.nominal import Nominal
+from gearheat.scenarios.measured.nominal import Nominal, drive_by
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.scenario import Scenario
 
@@ -20,15 +20,15 @@ PARTS = ((0.4, 0.7, 1.0), (0.5, 1.0))
 def made(scenario: Scenario, directions: Iterable[int] = (0,), seed: int = 0) -> dict[str, list[float]]:
     """Columns of a table of steady readings: column of the rig -> values in the unit of its name."""
     rng = np.random.default_rng(seed)
-    nominal, sensors = Nominal(scenario), sensors_of(scenario, Card())
+    sensors = sensors_of(scenario, Card())
+    nominal, usual = Nominal(drive_by(scenario, sensors)), Nominal(scenario)
     columns: dict[str, list[float]] = {s.column: [] for s in sensors}
-    point = scenario.operating_point
     for k, (speed, load_) in enumerate(product(*PARTS)):
         for direction in directions:
             turned = -1.0 if direction == 2 else 1.0
             parts = {"speed": speed, "torque": load_ * turned}
-            given = {s.reads: parts.get(s.kind, 1.0) * point[s.reads] for s in sensors if s.role == "given"}
-            given |= {s.reads: point[s.reads] + 0.7 * k for s in sensors if s.kind == "ambient"}
+            given = {s.reads: parts.get(s.kind, 1.0) * usual.value(s.reads) for s in sensors if s.role == "given"}
+            given |= {s.reads: usual.value(s.reads) + 0.7 * k for s in sensors if s.kind == "ambient"}
             state = nominal.at(given)
             assert state is not None
             for s in sensors:

@@ -43,13 +43,6 @@ def test_a_duty_in_si_with_a_jump(tmp_path: Path) -> None:
     assert duty_names(path) == ("carrier.w", "carrier.tau", "room.T")
 
 
-def test_any_unit_of_the_right_kind(tmp_path: Path) -> None:
-    path = table(tmp_path, "0,0.1,300", "2,0.1,300", header="time [h],carrier.tau [kN.m],room.T [K]")
-    schedule = read_duty(path, INPUTS)
-    assert schedule.stop == 7200
-    assert schedule.values["carrier.tau"][0] == pytest.approx(100, rel=1e-14)
-
-
 def test_the_inputs_of_a_rig_and_of_a_flat_model(tmp_path: Path) -> None:
 
     scenario = load("planetary")

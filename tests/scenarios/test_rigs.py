@@ -5,10 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
-from gearheat.model.run.design import design
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import join_phases
-from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.model.sources import sources
 from gearheat.scenarios.document import SOURCE_KINDS
@@ -154,19 +151,6 @@ class TestHelical:
         for radius, z in (radii | {"output_support.r": "stage_2.z_2"}).items():
             stage = z.split(".")[0]
             assert v[radius] == pytest.approx(v[f"{stage}.m_n"] * v[z] / 2 / np.cos(v[f"{stage}.beta"]), rel=1e-4)
-
-    def test_steady_is_where_a_simulation_ends(self, helical: FlatModel) -> None:
-        final = steady(helical, {})
-        assert 0.96 < final["efficiency.eta"][0] < 0.98
-        held = join_phases([(86400.0, {q.name: q.start for q in helical.inputs})])
-        run = simulate(helical, held, times=np.array([0.0, 86400.0]))
-        assert run["oil.T"][-1] == pytest.approx(final["oil.T"][0], abs=0.01)
-        assert run.audit.residual < 1e-6
-
-    def test_design_finds_the_cooling_for_an_oil_temperature(self, helical: FlatModel) -> None:
-        found = design(helical, ["cooling.A_fins"], {"oil.T": 310.0}, {})
-        assert found.values["cooling.A_fins"] > helical.quantity("cooling.A_fins").start
-        assert steady(helical, found.values)["oil.T"][0] == pytest.approx(310.0, abs=1e-6)
 
     def test_a_motor_that_gives_torque_only_runs_up(self) -> None:
         scenario = load("helical_two_stage").driven({"input": ("tau",), "output": ("tau",)})

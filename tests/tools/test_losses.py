@@ -56,16 +56,6 @@ def test_losses_in_the_power_flow_change_the_mesh_loss_in_opposite_ways(losses):
     assert successive[1]["P_mesh_W"] > ideal[1]["P_mesh_W"]
 
 
-def test_model_temperatures_are_the_steady_ones(losses, gearheat):
-    row = losses("--temperature", "model", "--power-flow", "ideal")[0]
-    steady = gearheat(
-        "steady", "planetary", "--json", "-", "--set", "gear_set.power_flow=ideal",
-        "--set", "carrier.w=102.6 rpm", "--set", "carrier.tau=1549.5 N.m", "--set", "room.T=25.18 degC",
-    ).json["values"]  # fmt: skip
-    assert row["P_total_W"] == pytest.approx(steady["efficiency.P_loss"], rel=1e-6)
-    assert row["alphaA_W_K"] == pytest.approx(row["P_total_W"] / (steady["oil.T"] - 25.18), rel=1e-6)
-
-
 def test_oil_set_by_the_user_holds_for_every_test(losses):
     ours, mineral = losses(*IDEAL), losses(*IDEAL, "--set", "oil=MINR")
     assert mineral[0]["mu_sp"] > ours[0]["mu_sp"]

@@ -194,3 +194,27 @@ def test_a_file_of_events_has_each_once(tmp_path: Path, capsys: pytest.CaptureFi
         lines.write({"number": 4, "event": "cleared", "machine": "one", "to": "today"})
     assert [json.loads(text)["number"] for text in path.read_text().splitlines()] == [3, 4]
     assert capsys.readouterr().out == "today one: alarm over\n"
+
+
+def test_a_fleet_on_the_workers_of_a_cluster(gearheat, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    farm = tmp_path / "farm"
+    farm.mkdir()
+    for name in ("one", "two"):
+        rows = (f"2016-03-01T{k // 6:02}:{k % 6}0Z,{k % 2},-7,{20 + k % 3},{50 - k / 10}" for k in range(13))
+        (farm / f"{name}.csv").write_text("\n".join([HEAD, *rows, ""]))
+    command = ("watch", farm, "--rig", "wind_turbine", "--every", EVERY, "--once", "--scheduler")
+    with monkeypatch.context() as without:
+        without.setattr("gearheat.tools.watch.api.find_spec", lambda name: None)
+        answer = gearheat(*command, "tcp://127.0.0.1:9")
+        assert answer.code == 2 and 'pip install "gearheat[dask]"' in answer.err
+    distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install gearheat[dask]")
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "worker_dashboard_address": None}
+    assert gearheat(*command[:-1], "--json", tmp_path / "here.jsonl").code == 0
+    with distributed.LocalCluster(**options) as there:
+        answer = gearheat(*command, there.scheduler_address, "--json", tmp_path / "there.jsonl")
+    assert answer.code == 0, answer.err
+    here, there = (
+        sorted(line.partition(",")[2] for line in (tmp_path / name).read_text().splitlines())
+        for name in ("here.jsonl", "there.jsonl")
+    )
+    assert here == there and len(here) == 4 and all("the machine stands still" in line for line in here)

@@ -126,6 +126,7 @@ def watch(
     alpha: float = 0.05,
     page: Path | None = None,
     publish: str = "",
+    scheduler: str | None = None,
     json: str | None = None,
 ) -> None:
     """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
@@ -144,6 +145,7 @@ def watch(
             page=page,
             publish=publish,
             after=out.last,
+            scheduler=scheduler,
         )
         for event in events:
             out.write(event)

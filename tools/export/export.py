@@ -51,7 +51,7 @@ def export(
         set: values by name: texts with units, quantities of pint, or numbers in SI
         drive: shaft end that drives; the rig's own if None
         given: "speed": speed and torque of the driving shaft are inputs; "torque": the torques of all shaft ends are
-        platform: "host", "all" or names such as "linux64,win64"
+        platform: "host", "all" or names such as "linux64,win64"; of FMI 3.0 "wasm32" as well
         license: licence under which it is given away
         author: who answers for it
         model_version: version of the model

@@ -7,6 +7,8 @@ import json
 import math
 import time
 from collections.abc import Iterator, Sequence
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +20,9 @@ from ..show.console import write
 from .broker import PORTS, Broker
 from .page import page_of
 from .sources import Files, Source, Stream
+from .spread import on_cluster
 from .store import Store
-from .watch import WINDOW, Watch, identity
+from .watch import WINDOW, Watch, identity, one_by_one
 
 File = str | Path
 #: Where the store notes which events have been taken.
@@ -40,6 +43,7 @@ def watch(
     page: File | None = None,
     publish: str = "",
     after: int | None = None,
+    scheduler: str | None = None,
 ) -> Iterator[dict[str, Any]]:
     """Follow logs while they grow, and diagnose all that has come with every window of samples.
 
@@ -58,6 +62,7 @@ def watch(
         page: HTML file that is written anew with every window, and loads itself again
         publish: topic of the broker of the source under which events go out, each at least once
         after: number of the last event that is known; without it, that of the last one that was taken
+        scheduler: address of a Dask scheduler whose workers diagnose the windows of a fleet
 
     Returns:
         its events in order: "window", "alarm", "cleared", "warning"
@@ -78,6 +83,8 @@ def watch(
         problems.append("--once: a broker has no end. Leave it out.")
     if publish and not broker:
         problems.append("--publish: only the broker of a source mqtt://HOST/TOPIC takes events.")
+    if scheduler is not None and find_spec("distributed") is None:
+        problems.append('--scheduler needs distributed. Run pip install "gearheat[dask]".')
     places = {"--state": state, "--page": page}
     written = {option: Path(file) for option, file in places.items() if file is not None}
     found = read_plan(PlanRequest(rig, card=None if card is None else Path(card)), written, problems)
@@ -91,7 +98,8 @@ def watch(
     judge = Judge(inputs, healthy.reference, healthy.siblings)
     store = Store(None if state is None else Path(state), f"{identity(request)} {every}")
     segment = inputs.card.columns.get("segment", "segment")
-    own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time)
+    spread = one_by_one if scheduler is None else partial(on_cluster, scheduler)
+    own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time, spread)
     taken = _source(str(source), store, once, state, publish)
     return _events(own, store, taken, after, None if page is None else Path(page), inputs.scenario.name)
 

@@ -29,6 +29,26 @@ SILENCE = 3600.0
 AHEAD = 86400.0
 
 
+#: What a judge is asked: machine, kind of its times, times [s] and samples.
+Asked = tuple[str, str, Sequence[float], Sequence[Cells]]
+#: What the samples say, or why they say nothing.
+Answer = dict[str, Any] | str
+Judge = Callable[..., dict[str, Any]]
+
+
+def answer(judge: Judge, asked: Asked) -> Answer:
+    """What a judge says, or why it says nothing."""
+    try:
+        return judge(*asked)
+    except GearheatError as error:
+        return str(error)
+
+
+def one_by_one(judge: Judge, asked: Iterable[tuple[int, Asked]]) -> Iterator[tuple[int, Answer]]:
+    """Answers with the numbers of what was asked, as they are there."""
+    return ((number, answer(judge, one)) for number, one in asked)
+
+
 class Watch:
     """Samples go in, events come out.
 
@@ -39,6 +59,7 @@ class Watch:
         judge: what the samples of a machine say
         every: samples of a window
         clock: time now [s]
+        spread: asks the judge about several machines
     """
 
     def __init__(
@@ -46,11 +67,12 @@ class Watch:
         sensors: Iterable[Sensor],
         segment: str,
         store: Store,
-        judge: Callable[[str, str, Sequence[float], Sequence[Cells]], dict[str, Any]],
+        judge: Judge,
         every: int,
         clock: Callable[[], float],
+        spread: Callable[[Judge, Iterable[tuple[int, Asked]]], Iterator[tuple[int, Answer]]] = one_by_one,
     ) -> None:
-        self.store, self.judge, self.every, self.clock = store, judge, every, clock
+        self.store, self.judge, self.every, self.clock, self.spread = store, judge, every, clock, spread
         self._known = {name for s in sensors for name in (s.column, split_unit(s.column)[0])}
         self._segment = segment
 
@@ -127,21 +149,20 @@ class Watch:
         return time, kind
 
     def _answer(self) -> Iterator[None]:
-        """Answer all windows that are full."""
-        for m in list(self.store.machines.values()):
-            while m.count > self.every:
-                self._window(m)
+        """Answer all windows that are full, one of each machine after the other."""
+        while full := [m for m in self.store.machines.values() if m.count > self.every]:
+            ends = [self.store.until(m, self.every) for m in full]
+            asked = ((k, (m.name, m.kind, *self.store.rows(m, ends[k]))) for k, m in enumerate(full))
+            for k, answer in self.spread(self.judge, asked):
+                self._window(full[k], ends[k], answer)
                 self.store.commit()
                 yield
 
-    def _window(self, m: Machine) -> None:
-        """Answer one window."""
-        until, begin = self.store.until(m, self.every), self.store.until(m, 1)
-        when = {"machine": m.name, "from": stamp(begin, m.kind), "to": stamp(until, m.kind)}
-        try:
-            answer = self.judge(m.name, m.kind, *self.store.rows(m, until))
-        except GearheatError as error:
-            self._warn(m, str(error), **when)
+    def _window(self, m: Machine, until: float, answer: Answer) -> None:
+        """Say what one window says."""
+        when = {"machine": m.name, "from": stamp(self.store.until(m, 1), m.kind), "to": stamp(until, m.kind)}
+        if isinstance(answer, str):
+            self._warn(m, answer, **when)
         else:
             alarm = answer["verdict"] != "consistent"
             if alarm != (m.alarm is not None):

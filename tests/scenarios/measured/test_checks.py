@@ -85,11 +85,6 @@ def test_rows_and_points_that_are_there_twice(read, planetary):
     assert "data.csv line 14: all readings are those of line 13. Keep one of them." in found
 
 
-def test_the_same_numbers_in_another_test_only_warn(read, helical):
-    found = read("helical_two_stage", {c: [*v, v[0]] for c, v in helical.items()})
-    assert "data.csv line 8: all readings are those of line 2. Keep one of them." in found.warnings
-
-
 def test_contradictions_within_a_test(read, planetary):
     order, oil = [k // 2 + 1 for k in range(12)], ["PAOR"] * 12
     order[3], oil[5] = 1, "MINR"
