@@ -20,6 +20,26 @@ import pytest
 from gearheat.tools.docs.blocks import PAGES
 from PIL import Image
 
+#: Widths of a telephone, of half a screen and of a screen [px].
+WIDTHS = (360, 800, 1400)
+#: What is wrong with what is seen of a page: wider than its screen, words beyond their box, pictures without content.
+FAULTS = """(() => {
+  const found = [], wide = document.documentElement.scrollWidth, name = (e) => `${e.tagName} ${e.innerText ?? ""}`;
+  if (wide > innerWidth) found.push(`the page is ${wide} px wide`);
+  const seen = (e) => e.getClientRects().length > 0;
+  const scrolls = (e) => e && (getComputedStyle(e).overflowX !== "visible" || scrolls(e.parentElement));
+  const words = "h1, h2, h3, p, li, dt, dd, td, th, summary, figcaption, button, .card";
+  for (const e of document.querySelectorAll(words))
+    if (seen(e) && e.scrollWidth > e.clientWidth + 1 && !scrolls(e)) found.push(`beyond its box: ${name(e)}`);
+  for (const e of document.querySelectorAll("figure svg, img:not(.toggler), canvas")) {
+    if (!seen(e)) continue;
+    const box = e.getBoundingClientRect();
+    const drawn = e.naturalWidth ?? (e.tagName === "CANVAS" ? e.width : e.querySelectorAll("path, use").length);
+    if (box.width < 100 || box.height < 40 || drawn < 5) found.push(`empty: ${e.tagName} ${box.width} x ${box.height}`);
+  }
+  return found;
+})()"""
+
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), "")
 
 
@@ -63,6 +83,13 @@ class Browser:
     def wide(self, width: int, height: int = 900) -> None:
         """Show the next page in so many pixels."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def faults(self, page: Path, width: int) -> list[str]:
+        """What is wrong with a page on a screen of a width, see `FAULTS`."""
+        self.wide(width)
+        self.open(page.as_uri())
+        self.wait(f"document.readyState === 'complete' && location.href === {json.dumps(page.as_uri())}")
+        return [f"{page.name} at {width} px: {fault}" for fault in self.js(FAULTS)]
 
     def js(self, code: str) -> Any:
         """The value of an expression of JavaScript."""

@@ -2,9 +2,12 @@
 
 import gc
 import os
+from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from browser import CHROMIUM, Browser
 
 #: Files that take more than 10 s, the longest first. A parallel run hands out whole files in this order, then the rest:
 #: what a file's tests share is made once, and no processor waits at the end for a long file that began late.
@@ -69,3 +72,12 @@ def pytest_collection_finish() -> None:
 def no_screen(monkeypatch):
     """Output is that of a pipe, whatever screen the tests run on: parallel runs tell their workers a width."""
     monkeypatch.delenv("COLUMNS", raising=False)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """One browser for the tests of a module, where there is one and what drives it."""
+    if not (CHROMIUM and find_spec("websockets")):
+        pytest.skip("no browser")
+    with Browser(tmp_path_factory.mktemp("browser")) as opened:
+        yield opened

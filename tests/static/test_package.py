@@ -36,8 +36,15 @@ def test_wheel_contents(tmp_path: Path) -> None:
     wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h", "*.schema.json")
     wanted |= {in_wheel(p) for folder in folders for p in (ROOT / folder).glob("*")}
     wanted |= {in_wheel(p) for p in (ROOT / "tools/docs/pages").rglob("*.*")}
+    wanted -= (benches := {name for name in wanted if name.startswith("gearheat/tools/bench/")})
+    assert benches and not benches & held, "developers' benches are in the wheel"
     assert wanted <= held, f"missing in the wheel: {sorted(wanted - held)}"
     assert not [name for name in held if not name.startswith("gearheat")], "the wheel holds foreign files"
+
+
+def test_the_sdist_holds_tests_benches_and_what_tells_of_the_project() -> None:
+    given = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()
+    assert {"graft tests", "graft tools/bench", "include CHANGELOG.md CITATION.cff CONTRIBUTING.md"} <= set(given)
 
 
 def test_readme_names_the_commands_that_are_run() -> None:

@@ -35,6 +35,15 @@ def name(page: Path) -> str:
 @pytest.mark.parametrize("page", [*FIRST, *thin(page for page in EVERY if page not in FIRST)], ids=name)
 def test_the_blocks_run_in_their_order(page: Path, tmp_path: Path) -> None:
     assert not Reader(PROGRAM, tmp_path).problems(page)
+    kept = [PAGES / picture.name for picture in tmp_path.glob("*.svg") if (PAGES / picture.name).exists()]
+    for picture in kept:
+        assert picture_numbers(tmp_path / picture.name) == pytest.approx(picture_numbers(picture), abs=1.0)
+
+
+def picture_numbers(path: Path) -> list[float]:
+    """Numbers of a picture in points, without its identifiers."""
+    text = re.sub(r'"[^"]*#[^"]*"|id="[^"]*"', "", path.read_text(encoding="utf-8"))
+    return [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", text)]
 
 
 @pytest.mark.parametrize("page", EVERY, ids=name)

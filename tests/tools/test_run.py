@@ -12,6 +12,9 @@ import sys
 import time
 
 import pytest
+from browser import WIDTHS
+from fabricated_findings import explained
+from gearheat.tools.diagnose.report.page import render
 from pages import problems_of
 
 TESTS = "1,13,17,22"
@@ -95,9 +98,19 @@ def test_the_report_is_one_file_that_needs_no_other(ran):
     assert page.count("<svg") == 5
     assert "<link" not in page and 'src="' not in page
     assert "The simulation is this close to 8 readings" in page and "It is worst for the" in page
-    assert "gearheat diagnose planetary names its causes" in page and "not built yet" in page
+    assert "gearheat diagnose TABLE --rig planetary names the causes" in page and "not built yet" in page
     assert page.index("noise floor") < page.index("Regressions on the readings")
     assert "test 13, PAOR" in page and page.count("<figcaption>") == 5
+
+
+def test_reports_and_pictures_stay_within_their_screens(browser, ran, gearheat, tmp_path):
+    made = {"map": ("-o", tmp_path / "map.csv", "--grid", "3x3"), "steady": (), "show": ()}
+    for command, more in made.items():
+        gearheat(command, "helical_two_stage", *more, "--plot", tmp_path / f"{command}.html")
+    (tmp_path / "diagnosis.html").write_text(render(explained()), encoding="utf-8")
+    pages = [ran[0] / "report.html", *sorted(tmp_path.glob("*.html"))]
+    assert len(pages) == 5
+    assert [fault for page in pages for width in WIDTHS for fault in browser.faults(page, width)] == []
 
 
 def test_compare_reads_the_rows_back(ran, gearheat, rig):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from importlib.util import find_spec
 from typing import Annotated
 
 import typer
@@ -55,7 +56,7 @@ PANELS = {
         measured.watch,
     ),
     "Films, and proof": (developers.film, developers.verify, developers.verify_contact),
-    "For developers": (developers.bench, developers.docs),
+    "For developers": (*((developers.bench,) if find_spec("gearheat.tools.bench") else ()), developers.docs),
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:

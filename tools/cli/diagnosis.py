@@ -35,10 +35,12 @@ def diagnose(
     report: Path | None = None,
     extended: Path | None = None,
     live: Path | None = None,
+    plot: Path | None = None,
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     console.use_one_thread()
     console.writable(live)
+    console.plottable(plot)
     outputs = gh.Outputs(predictions, json, report, extended)
     findings = gh.diagnose(
         data,
@@ -59,6 +61,8 @@ def diagnose(
         outputs=outputs,
     )
     findings.write(outputs)
+    if plot is not None and findings.save_picture(plot) is None:
+        console.note(f"no cause to draw: {plot} is not written")
     if live is not None:
         gh.page(rig, extended=[extended] if extended and extended.is_file() else ()).save(live, report=report)
     if json == "-":

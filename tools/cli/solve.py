@@ -195,12 +195,14 @@ def print_run(run: gh.TimeSeries, out: Path, plot: Path | None, json: str | None
     """Write a time series and its picture, and say where it ends."""
     run.save(out)
     found = _write_picture({**run.as_dict(), "out": str(out)}, plot, run)
-    console.answer(found, json, lambda: print_end(out, found))
+    console.answer(found, json, lambda: print_end(out, found, run.headlines))
 
 
-def print_end(out: Path, found: Mapping[str, Any]) -> None:
+def print_end(out: Path, found: Mapping[str, Any], headlines: Sequence[str] = ()) -> None:
     """Print where a time series ends, from its file and its JSON object."""
     console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+    for line in headlines:
+        console.say(line)
     if found.get("backward"):
         console.note(f"{found['backward']} of {found['rows']} rows: {BACKWARD}")
     print_outside(found.get("outside", ()))

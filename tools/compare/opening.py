@@ -35,12 +35,12 @@ def opening(rig: str, comparison: Comparison) -> list[str]:
     left = [c for c in known if noise.get(c.key) and rmse[c.key] > SCATTER * noise[c.key]]
     what = " and ".join(c.label for c in left)
     if left or not any(noise.get(c.key) for c in known):
-        more = f"of the {what} is more than readings scatter by" if left else "is left has no noise floor beside it"
+        why = f"The {what} err by more than readings scatter" if left else "No repeated point tells errors from scatter"
         said.append(
-            f"What {more}: gearheat diagnose {rig} names its causes with their sizes, and what to measure next."
+            f"{why}: gearheat diagnose TABLE --rig {rig} names the causes with their sizes, and what to measure next."
         )
     else:
-        said.append("What is left is what readings scatter by: there is nothing to correct.")
+        said.append("The errors are within the scatter of the readings: there is nothing to correct.")
     return said
 
 

@@ -114,7 +114,7 @@ def _describe_errors(rig: str, rows: Rows, comparison: Comparison, scores: Seque
         "summary": html_table(head, lines[:own], ours=0),
         "rivals": html_table(head, lines[own:]) if lines[own:] else "",
         "parity": parity(rows, drawn),
-        "residuals": Markup(residuals(rows, channels, noise)),
+        "residuals": residuals(rows, channels, noise),
         "groups": html_table(*group_lines(comparison)),
     }
 
@@ -163,13 +163,20 @@ def parity(rows: Rows, channels: Sequence[Channel]) -> Markup:
     legend(figure, panels[0])
     told: list[tuple[Axes, float, float, str]] = []
     for panel, channel in zip(panels, channels, strict=True):
-        pairs = zip(rows, numbers(rows, channel.column), numbers(rows, channel.measured), strict=True)
-        told += [(panel, x, y, _point(row, channel, x, y)) for row, x, y in pairs if np.isfinite(x + y)]
+        told += _tell(panel, rows, channel, numbers(rows, channel.column), numbers(rows, channel.measured))
     return hovering(figure, marks_on(figure, told))
 
 
-def _point(row: Row, channel: Channel, simulated: float, measured: float) -> str:
+def _tell(
+    panel: Axes, rows: Rows, channel: Channel, x: np.ndarray, y: np.ndarray
+) -> list[tuple[Axes, float, float, str]]:
+    """Each reading that is drawn, at its place, in words."""
+    return [(panel, a, b, _point(row, channel)) for row, a, b in zip(rows, x, y, strict=True) if np.isfinite(a + b)]
+
+
+def _point(row: Row, channel: Channel) -> str:
     """A reading in words: its test, its operating point, simulated and measured."""
+    simulated, measured = row[channel.column], row[channel.measured]
     point = [f"{row[name]:g} {unit}" for name, unit in UNITS.items() if row.get(name) is not None]
     test = [f"test {row['test']}"] if "test" in row else []
     where = ", ".join([*test, *([str(row["oil"])] if row.get("oil") else []), *point])
@@ -177,37 +184,46 @@ def _point(row: Row, channel: Channel, simulated: float, measured: float) -> str
     return f"{where}\n{channel.label} {simulated:.4g} {unit} simulated, {measured:.4g} {unit} measured"
 
 
-def residuals(rows: Rows, channels: Sequence[Channel], noise: Mapping[str, Any]) -> str:
+def residuals(rows: Rows, channels: Sequence[Channel], noise: Mapping[str, Any]) -> Markup:
     """Simulated minus measured, one line of panels a channel, against speed, torque, oil and direction.
 
-    A band, where the channel has a noise floor, is two of them wide to either side.
+    A band, where the channel has a noise floor, is two of them wide to either side; points tell tests.
     """
     known = ("n_set_rpm", "T_set_Nm", "oil", "direction")
     groupings = [by for by in known if any(row.get(by) is not None for row in rows)]
     figure, panels = empty(12.0, 2.7 * len(channels) + 0.8, len(channels), len(groupings), sharex="col", sharey="row")
+    told: list[tuple[Axes, float, float, str]] = []
     for i, channel in enumerate(channels):
         line = panels[i * len(groupings) : (i + 1) * len(groupings)]
         for panel, by in zip(line, groupings, strict=True):
-            _residual(panel, rows, channel, by, noise.get(channel.key))
+            told += _residual(panel, rows, channel, by, noise.get(channel.key))
             panel.label_outer()
         line[0].set_ylabel(f"{channel.label}\nsimulated - measured [{channel.unit}]")
     legend(figure, panels[0])
-    return svg(figure)
+    return hovering(figure, marks_on(figure, told))
 
 
-def _residual(panel: Axes, rows: Rows, channel: Channel, by: str, noise: float | None) -> None:
-    """One panel: errors of a channel over the groups of one grouping, side by side where they share a group."""
+def _residual(
+    panel: Axes, rows: Rows, channel: Channel, by: str, noise: float | None
+) -> list[tuple[Axes, float, float, str]]:
+    """One panel: errors of a channel over the groups of one grouping, side by side where they share a group.
+
+    Returns:
+        what its points tell
+    """
     panel.axhline(0, color="#888888", linewidth=1)
     if noise is not None:
         panel.axhspan(-2 * noise, 2 * noise, color="#eeeeee", zorder=0)
     values = [row.get(by) for row in rows]
     known = distinct(values)
     x = np.array([math.nan if v is None else known.index(v) for v in values]) + _spread(rows, by)
-    _scatter(panel, rows, x, errors(rows, channel))
+    y = errors(rows, channel)
+    _scatter(panel, rows, x, y)
     words = {"direction": DIRECTIONS}.get(by, {})
     panel.set_xticks(range(len(known)), [words.get(v, f"{v:g}" if by in UNITS else str(v)) for v in known])
     panel.set_xlim(-0.6, len(known) - 0.4)
     panel.set_xlabel(f"{GROUPINGS[by]} [{UNITS[by]}]" if by in UNITS else GROUPINGS[by])
+    return _tell(panel, rows, channel, x, y)
 
 
 def _spread(rows: Rows, by: str) -> np.ndarray:

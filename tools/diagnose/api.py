@@ -23,11 +23,12 @@ from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
 from ..show.console import as_json as json_text, file_of, progress_bar, write
 from ..show.display import Display, lines_of
+from ..show.picture import Picture
 from .answer.findings import Findings
 from .answer.numbers import as_object
 from .answer.plan import Plan
 from .report import plan as plans
-from .report.page import render
+from .report.page import picture, render
 from .report.screen import text
 from .report.tables import predictions_text
 from .request import MOST, PlanRequest, Request, read, read_plan
@@ -69,6 +70,14 @@ class Diagnosis(Display, Findings):
         named = [(" + ".join(" or ".join(names) for names in a.causes), a.probability) for a in self.answers]
         rows = [(names or "nothing wrong", probability) for names, probability in named]
         return ("answer", "probability"), rows
+
+    def drawing(self) -> Picture | None:
+        """Readings less the model, without and with the leading cause; None where no cause is pictured."""
+        if not self.pictures:
+            return None
+        figure = picture(self, self.pictures[0])
+        figure.suptitle(self.says.verdict)
+        return Picture(figure, self.says.verdict)
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON object, without what is not known."""

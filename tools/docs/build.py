@@ -29,7 +29,7 @@ from .reference import TABLES, code, fill_blocks, page
 
 #: New objects after which the collector of cycles looks through them, 700 by default.
 LOOK_AFTER = 100_000
-DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
+DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n240,1450,-500,20\n"
 
 
 def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run: str) -> None:
@@ -98,12 +98,14 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
     place = source / "generated"
     for title, found in (
         ("parts, laws and rigs", reference.pages()),
-        ("commands and modules", _list_program_pages(program, public)),
+        ("commands, modules and gallery", _list_program_pages(program, public, place / "gallery")),
     ):
         note(f"writing {title}")
         for name, text in found:
             (place / name).parent.mkdir(parents=True, exist_ok=True)
-            (place / name).write_text(text, encoding="utf-8")
+            # linked by the page above it: 150 more entries in the tree beside every page would cost much of the build
+            alone = "" if Path(name).parent == Path() or Path(name).stem == "index" else "---\norphan: true\n---\n\n"
+            (place / name).write_text(alone + text, encoding="utf-8")
     reference.copy_pictures(place)
     for path in source.rglob("*.md"):
         path.write_text(fill_blocks(add_captions(path.read_text(encoding="utf-8"))), encoding="utf-8")
@@ -123,15 +125,24 @@ def add_captions(text: str) -> str:
     return FENCE.sub(block, text)
 
 
-def _list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Path below the folder of generated pages, and text, of every page on commands and public names."""
+def _list_program_pages(program: TyperGroup, public: Mapping[str, Any], drawn: Path) -> Iterator[tuple[str, str]]:
+    """Path below the folder of generated pages, and text, of every page on commands and public names.
+
+    Args:
+        drawn: folder of the gallery's pictures, made
+    """
     commands = sorted(program.commands.items())
     yield "commands.md", page("commands", commands=commands, named=_named, default=_default)
     schema = json.loads(files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         Path("duty.csv").write_text(DUTY, encoding="utf-8")
-        answers = {command: _keys_of(program, command) for command in TABLES["asked"]}
-    yield "json.md", page("json", answers=answers, schema=schema)
+        pictures = {c: ("--plot", str(drawn / f"{name}.png")) for name, (_, c) in TABLES["gallery"].items()}
+        drawn.mkdir(parents=True)
+        answers = {c: _ask(program, c, *pictures.pop(c, ())) for c in TABLES["asked"]}
+        for command, plot in pictures.items():
+            _ask(program, command, *plot)
+    yield "json.md", page("json", answers={c: dict(_keys(answer)) for c, answer in answers.items()}, schema=schema)
+    yield "gallery.md", page("gallery", pictures=TABLES["gallery"], duty=DUTY)
     members = list(_public(public))
     yield "api/index.md", page("api", modules=TABLES["modules"], members=members, public=public)
     yield "api/gearheat.md", page("public", members=members)
@@ -151,12 +162,12 @@ def _default(param: Any) -> str:
     return code(param.default) if known else ""
 
 
-def _keys_of(program: TyperGroup, command: str) -> dict[str, str]:
-    """Every key of the JSON of a command, with its type."""
-    ended, out, said = call(program, [*shlex.split(command), "--json", "-"])
+def _ask(program: TyperGroup, command: str, *options: str) -> Any:
+    """The JSON of a command."""
+    ended, out, said = call(program, [*shlex.split(command), *options, "--json", "-"])
     if ended:
         raise GearheatError(f"docs: gearheat {command} ends with {ended}: {said}")
-    return dict(_keys(json.loads(out)))
+    return json.loads(out)
 
 
 def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:

@@ -108,18 +108,13 @@ def arguments(of: Any) -> str:
     return "".join(f"- `{name}`: {words(text)}\n" for name, text in found) + "\n" if found else ""
 
 
-def toctree(names: Iterable[str]) -> str:
-    """The pages below a page."""
-    return fenced("{toctree}", "\n".join([":hidden:", "", *names]))
-
-
 @cache
 def _templates() -> Environment:
     found = Environment(
         loader=PackageLoader("gearheat.tools.docs"), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     found.filters |= {"words": words, "code": code, "doc": inspect.getdoc}
-    found.globals |= {f.__name__: f for f in (fenced, listing, docstring, arguments, toctree)}
+    found.globals |= {f.__name__: f for f in (fenced, listing, docstring, arguments)}
     return found
 
 

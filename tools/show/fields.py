@@ -16,6 +16,8 @@ from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3
+#: Steps between the ticks of the abscissa, at most: long numbers have room.
+TICKS = 5
 #: Contours of a panel.
 LEVELS = 9
 #: Points that a page holds of a course or a panel, at most.
@@ -92,16 +94,40 @@ def fields(title: str, over: Sequence[Field], drawn: Sequence[Field]) -> Picture
     for panel, one in zip(panels, drawn, strict=False):
         (_lines if len(over) == 1 else _contours)(panel, over, one)
         panel.set(title=one.title, xlabel=over[0].title)
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     for panel in panels[len(drawn) :]:
         panel.set_visible(False)
     marks = marks_on(
         figure, [told for panel, one in zip(panels, drawn, strict=False) for told in _told(panel, over, one)]
     )
+    for panel in panels:
+        _thin_labels(panel)
     ends = [(f.name, float(np.nanmin(f.values)), float(np.nanmax(f.values)), f.unit) for f in (*over, *drawn)]
     note = "Point at the picture to read values."
     note += " The cross is the operating point." if all(f.point is not None for f in over) else ""
-    note += " The red line is the limit." if any(f.limit is not None for f in drawn) else ""
+    note += "".join(f" {_limit_words(f)}" for f in drawn if f.limit is not None)
     return Picture(figure, title, note, ("name", "low", "high", "unit"), ends, marks=marks)
+
+
+def _limit_words(one: Field) -> str:
+    """Where the limit is."""
+    limit = f"limit of {one.limit:.4g} {one.shown_unit}"
+    if one.limit is None or np.nanmin(one.shown) < one.limit < np.nanmax(one.shown):
+        return f"The red line is the {limit}."
+    return f"All points are {'within' if np.nanmax(one.shown) <= one.limit else 'beyond'} the {limit}."
+
+
+def _thin_labels(panel: Axes) -> None:
+    """Hide labels of contours that the panel's edge cuts or that lie over another or the operating point."""
+    edge = panel.get_window_extent()
+    kept = [line.get_window_extent().padded(6.0) for line in panel.lines]
+    for word in panel.texts:
+        box = word.get_window_extent()
+        if edge.x0 <= box.x0 and edge.y0 <= box.y0 and box.x1 <= edge.x1 and box.y1 <= edge.y1:
+            word.set_visible(not box.count_overlaps(kept))
+        else:
+            word.set_visible(False)
+        kept += [box] if word.get_visible() else []
 
 
 def _told(panel: Axes, over: Sequence[Field], one: Field) -> list[tuple[Axes, float, float, str]]:
@@ -139,7 +165,7 @@ def _contours(panel: Axes, over: Sequence[Field], one: Field) -> None:
     panel.tricontourf(x, y, values, levels=[low, *levels, high], cmap=FILLS.get(one.shown_unit, "Purples"), alpha=0.8)
     lines = panel.tricontour(x, y, values, levels=levels, colors="#333333", linewidths=0.8)
     halo: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="white")]
-    for word in panel.clabel(lines, fontsize=9, colors="black"):
+    for word in panel.clabel(lines, fontsize=9, colors="black", inline=False):
         word.set_path_effects(halo)
     if one.limit is not None and low < one.limit < high:
         panel.tricontour(x, y, values, levels=[one.limit], colors="#c00000", linewidths=2.5)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count
+from textwrap import wrap
 
 import numpy as np
 from matplotlib import colormaps
@@ -13,6 +14,7 @@ from matplotlib.patches import Ellipse, FancyBboxPatch, Polygon, Rectangle
 from ...model.core.connect import Assembly, nets
 from ...model.core.declare import Port
 from ...model.parts.ports import HeatPort, ShaftReading
+from .console import cell
 from .drawing import empty, marks_on
 from .heat_paths import place_names
 from .picture import Picture
@@ -36,7 +38,7 @@ OUT = 0.75
 NEXT = 0.4
 #: Level of the oil where nothing says more, as a share of the housing.
 LOW = 0.28
-#: Letters of a line of the list.
+#: Letters of a line of the list, longer ones go on below.
 LETTERS = 46
 #: Length of a tooth of a bevel gear, as a share of its cone.
 CONE = 0.35
@@ -341,12 +343,13 @@ def _list_lines(d: _Drawing, assembly: Assembly, temperatures: Mapping[str, floa
     lines = [(f"{d.numbered[name]}  {d.told[name]}", "") for name in names]
     for part in assembly.parts:
         if part.role in LISTED and part.name not in d.numbered:
-            level = f", level {1000 * part.values['level']:.0f} mm" if "level" in part.values else ""
-            volume = f", {1000 * part.values['V']:.3g} l" if "V" in part.values else ""
+            level = f", level {1000 * part.values['level']:.0f} mm" if "level" in part.values else ""
+            volume = f", {cell(float(1000 * part.values['V']))} l" if "V" in part.values else ""
             area = f": {part.values['A']:.3g} m²" if part.role == "surface" and "A" in part.values else ""
             lines.append((f"–  {d.told[part.name]}{volume}{level}{area}", ""))
     lines += [(f"{body.replace('_', ' ')} {T - 273.15:.1f} °C", d.fills[body]) for body, T in temperatures.items()]
-    return [(line if len(line) <= LETTERS else f"{line[: LETTERS - 1]}…", colour) for line, colour in lines]
+    wrapped = [(wrap(line, LETTERS, subsequent_indent="     "), colour) for line, colour in lines]
+    return [(row, "" if k else colour) for rows, colour in wrapped for k, row in enumerate(rows)]
 
 
 def end_words(ends: Sequence[str], values: Mapping[str, float]) -> dict[str, str]:
@@ -354,7 +357,7 @@ def end_words(ends: Sequence[str], values: Mapping[str, float]) -> dict[str, str
     found = {}
     for end in ends:
         w, tau = values.get(f"{end}.w"), values.get(f"{end}.tau")
-        words = [] if w is None else [f"{abs(w) * 30 / np.pi:.4g} rpm"]
-        words += [] if tau is None else [f"{abs(tau):.4g} N.m"]
+        words = [] if w is None else [f"{cell(abs(float(w)) * 30 / np.pi)} rpm"]
+        words += [] if tau is None else [f"{cell(abs(float(tau)))} N.m"]
         found[end] = "\n".join(words)
     return found

@@ -26,7 +26,7 @@ from ..show.columns import titled
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from .settings import adjust, find_unchecked, flat_of, refuse_given
-from .steady import outside_of
+from .steady import SteadyState, outside_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,6 +51,7 @@ class TimeSeries(Columns):
         columns: path -> values in SI
         units: SI unit of each column
         about: what else the JSON object says, before and behind the summary of the series
+        headlines: power, efficiency, losses and temperatures at the end, in words
     """
 
     name: str
@@ -58,6 +59,7 @@ class TimeSeries(Columns):
     columns: Mapping[str, np.ndarray]
     units: Mapping[str, str]
     about: tuple[Mapping[str, Any], Mapping[str, Any]] = ({}, {})
+    headlines: Sequence[str] = ()
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column in SI. Raises ScenarioError with suggestions for an unknown name."""
@@ -211,7 +213,10 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
         "unchecked": find_unchecked(scenario, flat),
     }
     name = f"{scenario.name}, {path.stem}"
-    return TimeSeries(name, result.index, result.columns, result.units, (before, behind))
+    last = replace(result, columns={key: column[-1:] for key, column in result.columns.items()})
+    end = SteadyState(scenario, flat, last, backward=False)
+    said = [*(["at the end: " + ", ".join(end.flows)] if end.flows else []), *end.headlines]
+    return TimeSeries(name, result.index, result.columns, result.units, (before, behind), said)
 
 
 def compiled(flat: FlatModel, schedule: Schedule) -> Through:

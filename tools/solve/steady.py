@@ -71,10 +71,14 @@ class SteadyState(Quantities):
         return dict(sorted(each.items(), key=lambda item: -item[1]))
 
     @property
+    def flows(self) -> list[str]:
+        """Which way power flows at each shaft end."""
+        return [f"{_kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
+
+    @property
     def title(self) -> str:
         """The rig, what is shown of it, and which way power flows."""
-        flows = [f"{_kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
-        return ", ".join([f"{self.scenario.name}: steady state", *flows])
+        return ", ".join([f"{self.scenario.name}: steady state", *self.flows])
 
     def losses_by_kind(self) -> dict[str, float]:
         """Loss power by the role of the parts that have it [W], the largest first."""

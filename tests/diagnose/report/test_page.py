@@ -3,12 +3,14 @@
 import json
 import math
 import re
+from pathlib import Path
 
 import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
 from gearheat.tools.diagnose.answer.evidence import Rows
+from gearheat.tools.diagnose.api import Diagnosis
 from gearheat.tools.diagnose.report.page import render
-from pages import problems_of
+from pages import problems_of, words_that_collide
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -50,6 +52,13 @@ def test_a_picture_a_cause_and_the_readings_behind_it() -> None:
     assert data["channels"]["T_oil"]["left"]["with the causes"][3] == pytest.approx(0.4 * math.sin(15), abs=1e-3)
     assert "uPlot" in page
     assert "MIT License" in page
+
+
+def test_the_leading_cause_is_a_picture_of_its_own(tmp_path: Path) -> None:
+    found = Diagnosis(**dict(explained()))
+    drawn = found.drawing()
+    assert drawn is not None and drawn.title == found.says.verdict and not words_that_collide(drawn.figure)
+    assert Diagnosis(**dict(clean())).save_picture(tmp_path / "none.svg") is None and not list(tmp_path.iterdir())
 
 
 def test_without_readings_there_is_no_plot() -> None:

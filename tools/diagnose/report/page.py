@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ...show import pages
 from ...show.drawing import COLOURS, empty, legend, svg
@@ -82,7 +83,7 @@ def _bars(findings: Findings) -> list[dict[str, str]]:
 
 def _picture(findings: Findings, found: Picture) -> dict[str, Any]:
     """A picture of a cause and the sentences beside it."""
-    told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(picture(findings, found))}
+    told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(svg(picture(findings, found)))}
     if cause := findings.cause(found.cause):
         size = ", ".join(filter(None, (phrases.size(cause), phrases.where(cause))))
         told |= {"size": size, "doc": cause.doc, "percent": phrases.percent(cause.probability, cause.mc_error)}
@@ -113,7 +114,7 @@ def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> li
     return [None if m is None or s is None else float(f"{m - s:.4g}") for m, s in pairs]
 
 
-def picture(findings: Findings, found: Picture) -> str:
+def picture(findings: Findings, found: Picture) -> Figure:
     """What is left in a channel against the quantity that a cause acts on, without and with the cause."""
     quantity = findings.rows.quantities[found.quantity]
     x, direction = _numbers(quantity.values), np.array(findings.rows.direction or [0] * len(found.before))
@@ -128,7 +129,7 @@ def picture(findings: Findings, found: Picture) -> str:
     panels[0].set_ylabel(_ordinate(findings, found.channel))
     if len(set(direction)) > 1:
         panels[0].legend(fontsize=8)
-    return svg(figure)
+    return figure
 
 
 def overview(findings: Findings) -> str:
