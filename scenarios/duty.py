@@ -163,6 +163,11 @@ def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.nd
         for a, b in zip(readable, readable[2:], strict=False)
         if time[b] == time[a] and np.ptp(time[readable]) > 0
     ]
+    problems += [
+        f"{name} line {rows[k][0]}: a jump at the {end} of the duty lasts no time. Take one of its rows out."
+        for k, other, end in ((1, 0, "begin"), (-1, -2, "end"))
+        if len(rows) > 2 and time[k] == time[other] and np.ptp(time[readable]) > 0
+    ]
     if readable and not np.abs(time[readable]).max() <= LATEST:
         problems.append(f"{name}: the time goes beyond {LATEST / YEAR:g} years. Check its unit.")
     if readable and np.ptp(time[readable]) == 0:

@@ -21,7 +21,7 @@ Types = Mapping[str, type[Component]]
 
 
 def losses_problems(file: str, losses: Mapping[str, Sequence[str]], known: Mapping[str, Quantity]) -> Iterator[str]:
-    """Sums of losses that sum nothing, no powers, or something twice.
+    """Sums of losses that sum nothing, no powers, or something twice, or whose name says another unit.
 
     Args:
         file: name of the rig file
@@ -37,6 +37,8 @@ def losses_problems(file: str, losses: Mapping[str, Sequence[str]], known: Mappi
                 yield f'{place}: there is no "{path}".{suggestion(path, known)}'
             elif known[path].unit != "W" and (len(summed) > 1 or unit == "W"):
                 yield f"{place}: {path} ({known[path].doc}) is no power. Sum powers only."
+            elif unit not in ("", own := known[path].unit) and column != path.rpartition(".")[2]:  # as mu_s
+                yield f"{place}: {path} is shown in {own}, and the name says {unit}. Give it another ending."
             if times > 1:
                 yield f"{place}: {path} is there twice. Name it once."
 
@@ -84,7 +86,9 @@ def campaign_problems(
         yield f'{where}: data = "{table.data}" is no CSV file. Name the measured table beside the rig file.'
     columns = {sensor.column or name: sensor.reads for name, sensor in sensors.items()}
     for path, driven in table.inputs.items():
-        if columns.get(driven.column, path) != path:
+        if sensors and driven.column not in columns:
+            yield f"{where}: no sensor reads column {driven.column} of {path}.{suggestion(driven.column, columns)}"
+        elif columns.get(driven.column, path) != path:
             yield f"{where}: column {driven.column} of {path} reads {columns[driven.column]}. Name its own column."
     twice = [c for c, times in Counter(d.column for d in table.inputs.values()).items() if times > 1]
     yield from (f"{where}: column {c} gives two inputs. Each needs its own." for c in twice)

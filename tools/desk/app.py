@@ -69,9 +69,6 @@ def run(folder: Path, port: int, *, browser: bool) -> None:
     address = f"http://{HOST}:{port}/{token}/"
     Bench(folder)  # a folder that cannot be made is told before anybody looks
 
-    def page() -> None:
-        _sheets(Bench(folder))
-
     def ready() -> None:
         print(address, flush=True)
         if browser:
@@ -80,7 +77,7 @@ def run(folder: Path, port: int, *, browser: bool) -> None:
     app.add_static_files("/files", folder, max_cache_age=0)
     app.add_middleware(Guard, prefix=f"/{token}")
     app.on_startup(ready)
-    ui.page("/", title="gearheat")(page)
+    ui.page("/", title="gearheat")(lambda: _sheets(Bench(folder)))
     ui.run(host=HOST, port=port, show=False, reload=False, show_welcome_message=False, uvicorn_logging_level="error")
 
 
@@ -104,7 +101,7 @@ def _sheets(bench: Bench) -> None:
                 ui.tab(name).props(f'data-sheet="{name}"')
     with ui.footer().classes("bg-grey-9"):
         ui.label("The command that does it:")
-        bench.shows_commands(ui.column().classes("font-mono text-xs gap-0"))
+        bench.log = ui.column().classes("font-mono text-xs gap-0")
     with ui.tab_panels(tabs, value=next(iter(SHEETS)), animated=False, keep_alive=True).classes("w-full"):
         for name, sheet in SHEETS.items():
             with ui.tab_panel(name):

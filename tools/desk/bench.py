@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -43,10 +43,6 @@ class Bench:
         field.on("focus", lambda: field.set_options(self.rigs(), value=field.value))
         return field
 
-    def shows_commands(self, log: Any) -> None:
-        """Show commands from now on in this place of the page."""
-        self.log = log
-
     def say(self, *words: str) -> None:
         """Show the command that does what was clicked."""
         self.say_line("gearheat " + shlex.join(words))
@@ -74,8 +70,7 @@ class Bench:
         except gh.GearheatError as error:
             place.clear()
             with place:
-                for problem in error.problems:
-                    ui.label(problem).classes("problem text-negative whitespace-pre-wrap")
+                tell(error.problems)
             return None
         place.clear()
         return found
@@ -85,12 +80,17 @@ class Bench:
         return f"files/{path.name}?{path.stat().st_mtime_ns}"
 
 
-def table(result: Any) -> None:
-    """Title and table of a result."""
-    head, rows = result.table()
+def tell(problems: Iterable[str]) -> None:
+    """Problems in the place of an answer."""
+    for problem in problems:
+        ui.label(problem).classes("problem text-negative whitespace-pre-wrap")
+
+
+def table(title: str, head: Sequence[Any], rows: Iterable[Sequence[Any]]) -> Any:
+    """A table of a result, numbers in digits that are read."""
     columns = [{"name": str(k), "label": str(h), "field": str(k), "align": "left"} for k, h in enumerate(head)]
     cells = [{str(k): digits(v) for k, v in enumerate(row)} for row in rows]
-    ui.table(columns=columns, rows=cells, title=result.title).props("dense flat wrap-cells")
+    return ui.table(columns=columns, rows=cells, title=title).props("dense flat wrap-cells")
 
 
 def digits(value: Any) -> Any:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import gearheat as gh
 from nicegui import events, ui
 
-from .bench import Bench
+from .bench import Bench, tell
 
 #: What a column is that nothing reads.
 UNUSED = "not used"
@@ -18,24 +19,19 @@ TICK = 0.3
 KINDS = ".csv,.txt"
 
 
+@dataclass
 class Table:
-    """A table that was dropped, with what was clicked of it.
+    """A table that was dropped into the folder, whose it is, and what was clicked of it."""
 
-    Args:
-        path: of its copy in the folder
-        rig: whose it is
-    """
-
-    def __init__(self, path: Path, rig: str) -> None:
-        self.path, self.rig = path, rig
-        self.columns: dict[str, str] = {}
-        self.units: dict[str, str] = {}
-        self.magnitudes: dict[str, bool] = {}
+    path: Path
+    rig: str
+    columns: dict[str, str] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    magnitudes: dict[str, bool] = field(default_factory=dict)
 
     def card(self) -> gh.CardText:
         """The card with what was clicked, the rest guessed."""
-        known = {"columns": self.columns, "units": self.units, "magnitudes": self.magnitudes}
-        return gh.card(self.rig, self.path, **known)  # type: ignore[arg-type]
+        return gh.card(self.rig, self.path, columns=self.columns, units=self.units, magnitudes=self.magnitudes)
 
     def options(self) -> list[str]:
         """What was clicked, as options of the command."""
@@ -67,8 +63,7 @@ def data_sheet(bench: Bench) -> None:
             return
         with place:
             _columns(table, found, look)
-            for problem in found.problems:
-                ui.label(problem).classes("problem text-negative whitespace-pre-wrap")
+            tell(found.problems)
             with ui.expansion("The card as TOML").classes("w-full"):
                 ui.code(found.as_toml(), language="toml").classes("w-full")
             with ui.row().classes("items-center"):
@@ -94,12 +89,8 @@ def _columns(table: Table, found: gh.CardText, look: Any) -> None:
         table.columns |= {} if name == UNUSED else {name: column}
         await look(table)
 
-    async def counts(column: str, unit: str) -> None:
-        table.units[column] = unit
-        await look(table)
-
-    async def turns(name: str, held: bool) -> None:
-        table.magnitudes[name] = held
+    async def said(place: dict[str, Any], name: str, value: Any) -> None:
+        place[name] = value
         await look(table)
 
     with ui.grid(columns="auto auto auto auto 1fr").classes("items-center w-full overflow-x-auto gap-x-4 gap-y-0"):
@@ -111,11 +102,11 @@ def _columns(table: Table, found: gh.CardText, look: Any) -> None:
             pick = ui.select(options, value=name, with_input=True).props("dense").classes("w-64")
             pick.on_value_change(lambda event, column=column: means(column, str(event.value)))
             unit = ui.input(value=card["units"].get(column, "")).props("dense").classes("w-20")
-            unit.on("change", lambda event, column=column: counts(column, str(event.args)))
+            unit.on("change", lambda event, column=column: said(table.units, column, str(event.args)))
             sensor = sensors.get(found.reads.get(name, ""), "")
             if sensor and card["units"].get(column) != "degC":
                 held = ui.checkbox("magnitudes", value=bool(card["sensors"][sensor]["magnitude"])).props("dense")
-                held.on_value_change(lambda event, sensor=sensor: turns(sensor, bool(event.value)))
+                held.on_value_change(lambda event, sensor=sensor: said(table.magnitudes, sensor, bool(event.value)))
             else:
                 ui.label("")
             ui.label("   ".join(row[k] for row in rows)).classes("font-mono whitespace-pre")
@@ -172,32 +163,24 @@ def _against(made: gh.Diagnosis) -> None:
         values, known = rows.channels[name], made.channel(name)
         unit = known.unit if known else ""
         models = {"as calibrated": values.nominal, "with what was found": values.extended or ()}
-        series = [
-            {
-                "name": word,
-                "type": "scatter",
-                "data": [[s, m, r] for s, m, r in zip(model, values.measured, rows.row, strict=False) if m is not None],
-            }
+        points = {
+            word: [[s, m, r] for s, m, r in zip(model, values.measured, rows.row, strict=False) if m is not None]
             for word, model in models.items()
-            if model
-        ]
-        axes = {"type": "value", "scale": True}
+        }
         tip = "p => `row ${p.data[2]}<br>simulated ${p.data[0].toPrecision(5)}<br>measured ${p.data[1].toPrecision(5)}`"
         return {
             "legend": {},
             "tooltip": {":formatter": tip},
-            "xAxis": {**axes, "name": f"simulated [{unit}]", "nameLocation": "middle", "nameGap": 30},
-            "yAxis": {**axes, "name": f"measured [{unit}]"},
-            "series": series,
+            "xAxis": {"scale": True, "name": f"simulated [{unit}]", "nameLocation": "middle", "nameGap": 30},
+            "yAxis": {"scale": True, "name": f"measured [{unit}]"},
+            "series": [{"name": word, "type": "scatter", "data": data} for word, data in points.items() if data],
         }
-
-    with ui.column().classes("w-96"):
-        pick = ui.select(names, value=names[0], label="Measured against simulated").classes("w-full")
-        chart = ui.echart(shown(names[0])).classes("h-96")
 
     def draw() -> None:
         chart.options.clear()
         chart.options.update(shown(str(pick.value)))
         chart.update()
 
-    pick.on_value_change(draw)
+    with ui.column().classes("w-96"):
+        pick = ui.select(names, value=names[0], label="Measured against simulated", on_change=draw).classes("w-full")
+        chart = ui.echart(shown(names[0])).classes("h-96")

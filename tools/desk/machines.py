@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 from urllib.parse import unquote
 
@@ -66,7 +65,7 @@ def rigs_sheet(bench: Bench) -> None:
         compare = ui.button("Compare")
         fmu, page = ui.button("Export as FMU"), ui.button("Export as page")
     place = ui.column().classes("w-full")
-    table(gh.shipped())
+    table(gh.shipped().title, *gh.shipped().table())
 
     async def beside() -> None:
         names = [str(first.value), str(second.value)]
@@ -76,7 +75,7 @@ def rigs_sheet(bench: Bench) -> None:
         for name in names:
             bench.say("steady", name)
         with place:
-            table(SimpleNamespace(title="Steady states at the operating points", table=lambda: _beside(names, states)))
+            table("Steady states at the operating points", *_beside(names, states))
 
     def writes(command: str, ending: str, job: Callable[[str, Path], object]) -> Callable[[], Awaitable[None]]:
         async def made() -> None:

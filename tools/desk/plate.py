@@ -8,7 +8,7 @@ from typing import Any
 import gearheat as gh
 from nicegui import ui
 
-from .bench import Bench, digits
+from .bench import Bench, digits, table
 
 #: The name plate: option -> what it is, what stands there at first.
 PLATE = {
@@ -24,6 +24,8 @@ SHEET = {
     "housing": "Housing, 800x370x430 mm",
     "oil_volume": "Oil in it, 20 l",
 }
+#: Columns of the assumed values: key of a line -> what it is.
+HEADS = {"name": "name", "value": "value", "unit": "unit", "doc": "what it is", "source": "rule"}
 #: Beginning of the source of a value that nobody gave.
 ASSUMED = "assumed"
 
@@ -81,12 +83,9 @@ def _assumed(bench: Bench, place: Any, path: Path, about: gh.Description) -> Non
     effects = about.effects()
     leading = [row[0] for row in effects[2]] if effects else []
     lines = {line["name"]: line for line in about.found["parameters"] if line["source"].startswith(ASSUMED)}
-    order = [*(name for name in leading if name in lines), *(name for name in lines if name not in leading)]
-    heads = {"name": "name", "value": "value", "unit": "unit", "doc": "what it is", "source": "rule"}
-    columns = [{"name": key, "label": label, "field": key, "align": "left"} for key, label in heads.items()]
-    rows = [{key: digits({**lines[name], **(lines[name]["written"] or {})}[key]) for key in heads} for name in order]
-    title = "Assumed values, those that matter most first"
-    texts = {row["name"]: f"{row['value']} {row['unit'] or ''}".strip() for row in rows}
+    order = sorted(lines, key=lambda name: leading.index(name) if name in leading else len(leading))
+    rows = [[{**lines[name], **(lines[name]["written"] or {})}[key] for key in HEADS] for name in order]
+    texts = {name: f"{digits(value)} {unit or ''}".strip() for name, value, unit, *_ in rows}
     with place:
         with ui.row().classes("items-end change"):
             name = ui.select(list(texts), label="Change", with_input=True).classes("w-64")
@@ -94,9 +93,7 @@ def _assumed(bench: Bench, place: Any, path: Path, about: gh.Description) -> Non
             name.on_value_change(lambda event: value.set_value(texts.get(event.value, "")))
             name.set_value(next(iter(texts), None))
             write = ui.button("Write")
-        ui.table(columns=columns, rows=rows, title=title, row_key="name").props("dense flat wrap-cells").classes(
-            "assumed"
-        )
+        table("Assumed values, those that matter most first", list(HEADS.values()), rows).classes("assumed")
         below = ui.column()
 
     async def written() -> None:
