@@ -45,6 +45,8 @@ TOLERANCE = 1e-4
 
 #: Steps of a warm-up between two points of its schedule or output; a row that needs more is stopped.
 MOST_STEPS = 1_000_000
+#: Steps that a warm-up takes, by which it is judged how much there is to do; and one more for each piece of its duty.
+STEPS = 40
 
 #: Steady states that a thread takes at a time. The results do not depend on it.
 STEADY_BLOCK = 1024
@@ -209,7 +211,7 @@ class Batch:
         home = np.array([q.start for q in self.inputs])
         x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
         status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_steady", widen(self.steady_source, instructions(), BESIDE))
+        run = driver("batch_steady", widen(self.steady_source, instructions(), BESIDE), n)
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, status, iterations)]
@@ -254,7 +256,7 @@ class Batch:
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_warmup", widen(self.warmup_source, instructions(), BESIDE))
+        run = driver("batch_warmup", widen(self.warmup_source, instructions(), BESIDE), n * (STEPS + duty.m))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]

@@ -8,6 +8,7 @@ import os
 import platform as host
 import tempfile
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -20,7 +21,7 @@ import numpy as np
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import FmuError
 from . import emit, rosenbrock
-from .compiling import binary, host_platform, why_not_loaded
+from .compiling import QUICK, THOROUGH, binary, host_platform, why_not_loaded
 from .equations import equations, full, hoist
 from .fixed import wrapper
 from .grid import Grid
@@ -41,7 +42,11 @@ _SIGNATURES = {
 WIDER = {"avx512f": 8, "avx2": 4}
 #: Rows of a batch side by side with any of them: two vectors at once do not wait for each other.
 BESIDE = 8
-_LOADED: dict[tuple[str, str], Any] = {}
+#: Functions by name, source and whether they were compiled quickly, and what each source has had to do.
+_LOADED: dict[tuple[str, str, bool], Any] = {}
+_WORK: Counter[str] = Counter()
+#: Rows or steps up to which a source is compiled quickly: without optimising, each takes 15 microseconds longer.
+LITTLE = 50_000
 _LOCK = threading.Lock()
 #: What a steady row holds behind the model's outputs: supply [W], throughput [W], law arguments outside their range,
 #: largest residual of the implicit equations.
@@ -51,22 +56,25 @@ EXTRA = 4
 METHOD = rosenbrock.RODAS4
 
 
-def driver(name: str, source: str) -> Any:
-    """The C function of a source, compiled and loaded once in a process.
+def driver(name: str, source: str, work: int) -> Any:
+    """The C function of a source, compiled and loaded once in a process; anew, and optimised, when it has much to do.
 
     Args:
         name: of the function, a key of `_SIGNATURES`
         source: the whole C text
+        work: rows or steps that it is about to do
 
     Raises:
         FmuError: the compiler fails, or what it made does not load
     """
     with _LOCK:
-        if (name, source) not in _LOADED:
-            function = getattr(load(source), name)
+        _WORK[source] += work
+        key = name, source, _WORK[source] <= LITTLE
+        if key not in _LOADED:
+            function = getattr(load(source, (THOROUGH, QUICK) if key[2] else (THOROUGH,)), name)
             function.argtypes, function.restype = _SIGNATURES[name], ctypes.c_int
-            _LOADED[name, source] = function
-        return _LOADED[name, source]
+            _LOADED[key] = function
+        return _LOADED[key]
 
 
 @cache
@@ -106,11 +114,12 @@ def processor() -> frozenset[str]:
     return frozenset(WIDER) & frozenset(flags)
 
 
-def load(source: str) -> ctypes.CDLL:
+def load(source: str, ways: Sequence[str] = (THOROUGH,)) -> ctypes.CDLL:
     """The library of a C text, compiled once and kept.
 
     Args:
         source: the whole C text
+        ways: how much it may be optimised, see `binary`
 
     Raises:
         FmuError: the compiler fails, or what it made does not load
@@ -118,7 +127,7 @@ def load(source: str) -> ctypes.CDLL:
     platform = host_platform()
     handle, name = tempfile.mkstemp(suffix=platform.suffix)
     with os.fdopen(handle, "wb") as file:
-        file.write(binary(source, platform))
+        file.write(binary(source, platform, ways=ways))
     try:
         return ctypes.CDLL(name)
     except OSError as error:
@@ -175,7 +184,7 @@ def broken_relations(source: str, p: np.ndarray) -> np.ndarray:
     rows = np.ascontiguousarray(np.atleast_2d(p), dtype=float)
     broken = np.full(len(rows), -1, dtype=np.int32)
     if source:
-        driver("batch_relations", source)(len(rows), address(rows), rows.shape[1], address(broken))
+        driver("batch_relations", source, len(rows))(len(rows), address(rows), rows.shape[1], address(broken))
     return broken
 
 

@@ -40,13 +40,15 @@ PLATFORMS = _platforms("fmi2")
 #: Those of FMI 3.0.
 PLATFORMS_3 = _platforms("fmi3")
 
-#: How much the compiler optimises.
-OPTIMISE = "-O2"
+#: How much the compiler optimises what is kept.
+THOROUGH = "-O2"
+#: What runs little: ready in a fifth of the time, it takes three to four times as long to run, to the same digits.
+QUICK = "-O0"
 #: Any change makes the compiler rebuild its run-time libraries. To look for statements that would fill a vector takes a
 #: quarter of its time and gains none in the running: rows stand side by side already.
 CODE = (
     *("-g0", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99"),
-    "-fno-slp-vectorize",
+    *("-fno-slp-vectorize", "-fno-stack-protector"),
 )
 LINK = ("-s", "-shared")
 FLAGS = (*CODE, *LINK)
@@ -125,29 +127,37 @@ def _usual_cache() -> Path:
     return Path.home() / ".cache" / "gearheat"
 
 
-def binary(source: str, platform: Platform, *, headers: Mapping[str, str] = MappingProxyType({})) -> bytes:
+def binary(
+    source: str,
+    platform: Platform,
+    *,
+    headers: Mapping[str, str] = MappingProxyType({}),
+    ways: Sequence[str] = (THOROUGH,),
+) -> bytes:
     """The shared library of a C source; the same source is compiled once only.
 
     Args:
         source: the C text
         platform: the platform of FMI to compile for
         headers: name -> text of files beside the source
+        ways: how much it may be optimised: what is kept of any of them is taken, and the last is made
 
     Raises:
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
-    key = hashlib.sha256()
     windows = wrapper("windows.c")
-    named = (platform.name, *platform.targets, OPTIMISE, *FLAGS, *_SYSTEM, version("ziglang"))
+    named = (platform.name, *platform.targets, *FLAGS, *_SYSTEM, version("ziglang"))
     named += _WEB if "wasm" in platform.name else ()
-    for part in (source, *headers.values(), windows, *named):
-        key.update(part.encode() + b"\0")
-    stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
-    if (kept := _kept(stored)) is not None:
-        return kept
+    for way in ways:
+        key = hashlib.sha256()
+        for part in (source, *headers.values(), windows, way, *named):
+            key.update(part.encode() + b"\0")
+        stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
+        if (kept := _kept(stored)) is not None:
+            return kept
     files = {"all.c": source, "windows.c": windows, **headers}
     with ThreadPoolExecutor(len(platform.targets)) as pool:
-        made = _join(list(pool.map(lambda target: _compile(files, target), platform.targets)))
+        made = _join(list(pool.map(lambda target: _compile(files, target, way), platform.targets)))
     store(stored, hashlib.sha256(made).digest() + made)
     return made
 
@@ -231,7 +241,7 @@ def compile_told(source: str, headers: Mapping[str, str]) -> str:
         FmuError: the compiler is missing or fails
     """
     target = host_platform().targets[0]
-    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, OPTIMISE, *CODE, "-Wframe-larger-than=0", "-c"]
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", target, THOROUGH, *CODE, "-Wframe-larger-than=0", "-c"]
     with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in {"all.c": source, **headers}.items():
             Path(folder, name).write_text(text, encoding="utf-8")
@@ -245,23 +255,23 @@ def _environment() -> dict[str, str]:
     return environment
 
 
-def _compile(files: Mapping[str, str], target: str) -> bytes:
+def _compile(files: Mapping[str, str], target: str, way: str) -> bytes:
     environment = _environment()
     with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
-        for command in _commands(target, files):
+        for command in _commands(target, files, way):
             _run([sys.executable, "-m", "ziglang", "cc", "-target", target, *command], target, folder, environment)
         return Path(folder, "library").read_bytes()
 
 
-def _commands(target: str, files: Iterable[str]) -> list[list[str]]:
+def _commands(target: str, files: Iterable[str], way: str) -> list[list[str]]:
     """What the compiler is asked for, one after the other; a module of WebAssembly joins all C files but windows.c."""
     if "wasm" in target:
         return [[*_WEB, "-o", "library", *(name for name in files if name.endswith(".c") and name != "windows.c")]]
     if "windows" not in target:
-        return [[OPTIMISE, *FLAGS, "-o", "library", "all.c", "-lm"]]
-    objects = [[OPTIMISE, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]
+        return [[way, *FLAGS, "-o", "library", "all.c", "-lm"]]
+    objects = [[way, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]
     return [*objects, [*LINK, "-nostdlib", "-o", "library", "all.o", "windows.o", *_SYSTEM]]
 
 

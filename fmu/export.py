@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import os
 import uuid
 import zipfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -34,7 +35,7 @@ from pathlib import Path
 from typing import Any
 
 from ..model.core.flat import FlatModel
-from .compiling import Platform, Progress, binary, compile_all, platforms, store
+from .compiling import QUICK, THOROUGH, Platform, Progress, binary, compile_all, platforms, store
 from .described import remember
 from .description import Owner, dependencies, description, identifier, terminals
 from .documentation import About, PartText, documentation
@@ -132,7 +133,8 @@ def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
 
 def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
     headers, built = (headers_of_3(), OF_LIBRARY + code) if fmi == 3 else ({}, code)
-    made = compile_all(lambda platform: binary(built, platform, headers=headers), chosen, progress)
+    ways = (QUICK if os.environ.get("GEARHEAT_COMPILE") == "quick" else THOROUGH,)
+    made = compile_all(lambda platform: binary(built, platform, headers=headers, ways=ways), chosen, progress)
     return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 
 

@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import gc
+import os
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,7 +21,6 @@ LONGEST = (
     "fmu/test_duties.py",
     "tools/test_new.py",
     "diagnose/test_readings_and_logs.py",
-    "challenge/test_machines.py",
     "tools/test_docs.py",
     "tools/test_run.py",
     "diagnose/library/test_causes.py",
@@ -47,6 +47,8 @@ LONGEST = (
     "laws/test_sweeps.py",
     "fmu/test_batch.py",
 )
+#: FMUs of tests run little: their code is compiled as it stands. That it gives the same digits has a test.
+os.environ.setdefault("GEARHEAT_COMPILE", "quick")
 #: New objects after which the collector of cycles looks through them, 700 by default: texts of C and expressions are
 #: millions of objects, few of them in cycles.
 LOOK_AFTER = 50_000

@@ -17,7 +17,7 @@ import typer
 from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.tools.show import console
 
-from .bench import run, tasks
+from .bench import RULES, run, tasks
 from .hide import KINDS
 from .names import names
 from .printing import show
@@ -50,12 +50,15 @@ def challenge(
     practice: Annotated[
         Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
     ] = None,
+    off: Annotated[str, typer.Option(help="Rule of the inference that is turned off, of rules.toml.")] = "",
     json: Annotated[str | None, typer.Option(metavar="FILE", help="Write the result as JSON; - for stdout.")] = None,
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []
     if only is not None and only not in (*KINDS, "several"):
         problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
+    if off and off not in RULES:
+        problems.append(f'challenge: unknown rule "{off}".{suggestion(off, RULES)} Rules: {", ".join(RULES)}.')
     if n < 1:
         problems.append(f"challenge: --n {n}: ask for at least one case.")
     if sheet == "practice" and practice is None:
@@ -67,9 +70,9 @@ def challenge(
         todo = []
         for name in POOLED if sheet == "all" else (sheet,):
             if name in MAKERS:
-                todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
+                todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only, off=off)
         if practice is not None and sheet in ("all", "practice"):
-            todo += tasks("practice", n, seed, place / "practice", given=practice)
+            todo += tasks("practice", n, seed, place / "practice", given=practice, off=off)
 
         def progress(done: int, o: Outcome) -> None:
             trouble = f": {o.problem}" if o.problem else ""

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import gearheat
@@ -21,10 +22,13 @@ from .classes import classes_of
 #: PREDICTIONS.csv and SECONDS (its processor time) if it can.
 Diagnoser = Callable[[str, Mapping[str, Path], Path], None]
 
-#: The command, in a process that notes its processor time [s].
+#: The command, in a process that notes its processor time [s]; a rule of the inference may be off.
 PROGRAM = """
-import atexit, os, pathlib, sys
+import atexit, importlib, json, os, pathlib
 from gearheat.tools.cli.__main__ import main
+for name, value in json.loads(os.environ.get("RULE_OFF", "{}")).items():
+    module, _, constant = name.rpartition(".")
+    setattr(importlib.import_module("gearheat.tools.diagnose." + module), constant, value)
 atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(sum(os.times()[:4]))))
 main()
 """
@@ -42,13 +46,16 @@ UNNAMED = frozenset({"model.unexplained"})
 OPTIONS: Mapping[str, str] = {"card": "--card", "reference": "--reference", "points": "--predict"}
 
 
-def ask_command(rig: str, files: Mapping[str, Path], place: Path) -> None:
+def ask_command(
+    rig: str, files: Mapping[str, Path], place: Path, off: Mapping[str, float] = MappingProxyType({})
+) -> None:
     """Run `gearheat diagnose` on the files of a case, in a process of its own with one thread.
 
     Args:
         rig: its name
         files: of the case, by what they are
         place: folder for the answer
+        off: constants of the inference -> values without a rule
 
     Raises:
         DataError: it ends with another exit code than 0, or takes too long
@@ -61,6 +68,7 @@ def ask_command(rig: str, files: Mapping[str, Path], place: Path) -> None:
     words += ["--predictions", str(place / "PREDICTIONS.csv")] if "points" in files else []
     program = [sys.executable, "-c", PROGRAM, *words]
     env = {**os.environ, **dict.fromkeys(THREADS, "1"), "SECONDS_FILE": str(place / "SECONDS")}
+    env["RULE_OFF"] = json.dumps(dict(off))
     try:
         done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False)
     except subprocess.TimeoutExpired:

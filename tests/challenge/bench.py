@@ -6,9 +6,11 @@ import hashlib
 import json
 import threading
 import time
+import tomllib
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,8 @@ CASE_SOURCES = ("model", "scenarios", "tests/challenge")
 #: Folders that the answers follow from besides them.
 ANSWER_SOURCES = ("fmu", "tools")
 
+#: Rules of the inference that it can do without, one at a time: what each is, and the constants that turn it off.
+RULES: Mapping[str, Any] = tomllib.loads((Path(__file__).parent / "rules.toml").read_text(encoding="utf-8"))
 #: Cases are made one at a time: simulators keep buffers.
 _MAKING = threading.Lock()
 
@@ -40,6 +44,7 @@ class Task:
         folder: for its files and answers
         given: the folder of a case that is there already
         stamps: of what the case and the answer follow from
+        off: rule of the inference that is off, none if empty
     """
 
     sheet: str
@@ -50,6 +55,7 @@ class Task:
     given: Path | None
     stamps: tuple[str, str]
     diagnose: Diagnoser
+    off: str = ""
 
 
 def tasks(
@@ -61,14 +67,17 @@ def tasks(
     kind: str | None = None,
     given: Path | None = None,
     diagnose: Diagnoser = ask_command,
+    off: str = "",
 ) -> list[Task]:
-    """The cases 0 ... n - 1 of a sheet, or the first n in the folder `given`."""
+    """The cases 0 ... n - 1 of a sheet, or the first n in the folder `given`; answered without a rule of `RULES`."""
     case_stamp = f"{fingerprint(*CASE_SOURCES)} {sheet} {seed} {kind}"
     stamps = case_stamp, f"{case_stamp} {diagnose.__module__} {fingerprint(*ANSWER_SOURCES)}"
+    if off:
+        diagnose = partial(ask_command, off=RULES[off]["set"])
     if given is not None:
         folders = practice.folders(given)[:n]
-        return [Task(sheet, k, seed, None, out / p.name, p, stamps, diagnose) for k, p in enumerate(folders)]
-    return [Task(sheet, k, seed, kind, out / f"{k:04d}", None, stamps, diagnose) for k in range(n)]
+        return [Task(sheet, k, seed, None, out / p.name, p, stamps, diagnose, off) for k, p in enumerate(folders)]
+    return [Task(sheet, k, seed, kind, out / f"{k:04d}", None, stamps, diagnose, off) for k in range(n)]
 
 
 def fingerprint(*folders: str) -> str:
@@ -100,7 +109,7 @@ def solve(task: Task) -> Outcome:
         truth, case = practice.truth(task.given), practice.files(task.given)
     else:
         truth, case = _make(task), practice.files(task.folder / "case", made=True)
-    place = task.folder / "answer"
+    place = task.folder / f"answer {task.off}".strip()
     state = _read(place / "DONE.json")
     if state.get("stamp") != task.stamps[1]:
         state = _ask(task, rig_of(truth), case, place)

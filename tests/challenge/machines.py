@@ -19,9 +19,9 @@ from typing import Any
 
 import gearheat
 import numpy as np
-from gearheat.model.errors import GearheatError, ScenarioError
+from gearheat.fmu.batch import Batch, Status
+from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.roles import Roles
-from gearheat.model.run.steady import steady_table
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
@@ -112,6 +112,7 @@ class Machine:
     def __init__(self, path: Path, rng: np.random.Generator) -> None:
         scenario = load(str(path))
         self.nominal, self.sensors = Nominal(scenario), sensors_of(scenario, Card())
+        self.batch = Batch(self.nominal.flat)
         roles = Roles.of(scenario.spec)
         names = [n for n in self.nominal.flat.index if "." in n]
         unequal = [n for n in names if any(fnmatchcase(n, t) for t in TRUE)]
@@ -141,21 +142,21 @@ class Machine:
         known = {n: v for n, v in self.nominal.scenario.operating_point.items() if n in self.nominal.flat.index}
         rows = []
         for n, load_, room in points:
-            given = {"input.w": n * self.nominal.value("input.w"), "room.T": room + 273.15}
+            here = {"input.w": n * self.nominal.value("input.w"), "room.T": room + 273.15}
             course = _course((n, load_, room))
             true = {
                 name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ course))
                 for name, (level, slopes) in self.unequal.items()
             }
-            given["output.load"] = load_ * self.nominal.value("output.load")
-            rows.append(known | given | dict(changed) | true)
-        try:
-            found = steady_table(self.nominal.flat, rows).columns
-        except GearheatError as error:
-            raise ArithmeticError("no steady state") from error
+            here["output.load"] = load_ * self.nominal.value("output.load")
+            rows.append(known | here | dict(changed) | true)
+        given = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        found = self.batch.steady(*self.batch.vectors(given))
+        if (found.status != Status.OK).any():
+            raise ArithmeticError("no steady state")
         if not (found["oil.T"] < HOT + 273.15).all():
             raise ArithmeticError("too hot")
-        return found
+        return given | {name: found[name] for name in found.columns}
 
     def read(
         self, changed: Change, errors: Change, points: Sequence[tuple[float, float, float]] | None = None

@@ -1,6 +1,7 @@
 """The bench hides what its truth says, shows nothing of it, and scores answers as the bars are meant."""
 
 import csv
+import importlib
 import json
 import math
 from collections.abc import Mapping
@@ -14,7 +15,7 @@ import pytest
 from challenge import cases, foreign, forms, model_rig, practice, rig, scoring
 from challenge.__main__ import app
 from challenge.answers import Answer, Hypothesis, ask_command, read_answer
-from challenge.bench import run, tasks
+from challenge.bench import RULES, run, tasks
 from challenge.classes import classes_of
 from challenge.hide import APART, KINDS, SHARES, schedule
 from challenge.plan import draw_plan
@@ -425,11 +426,21 @@ def test_command_refuses_what_it_cannot_do(tmp_path: Path) -> None:
     for words, said in (
         (["--sheet", "own", "--only", "claen"], 'Did you mean "clean"'),
         (["--sheet", "own", "--n", "0"], "at least one case"),
+        (["--sheet", "own", "--off", "exchang"], 'Did you mean "exchange"'),
         (["--sheet", "practice"], "--practice FOLDER"),
         (["--sheet", "practice", "--practice", str(tmp_path)], "no campaigns"),
     ):
         answer = CliRunner().invoke(app, words)
         assert answer.exit_code == 2 and said in answer.stderr
+
+
+def test_rules_that_can_be_off_are_constants_of_the_inference() -> None:
+    for rule in RULES.values():
+        assert rule["says"]
+        for name, value in rule["set"].items():
+            module, _, constant = name.rpartition(".")
+            own = getattr(importlib.import_module(f"gearheat.tools.diagnose.{module}"), constant)
+            assert isinstance(own, (int, float)) and own != value, name
 
 
 def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,11 +1,14 @@
 """Batches of rows: equal to single runs, whatever rows stand beside them and however many threads share the work."""
 
 import pickle
+from collections import Counter
+from pathlib import Path
 from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
 import pytest
+from gearheat.fmu import batch_library, compiling
 from gearheat.fmu.batch import Batch, Rows, Status
 from gearheat.fmu.batch_library import processor
 from gearheat.model.core.flat import FlatModel, Quantity
@@ -232,6 +235,29 @@ def test_the_processor_leaves_the_bits_alone(heat: Batch, monkeypatch: pytest.Mo
         monkeypatch.setattr("gearheat.fmu.batch.instructions", lambda name=name: name)
         assert same(own, heat.warmup(duty, *arrays, times=[300.0, 1200.0]))
         assert same(settled, heat.steady(*arrays))
+
+
+def test_what_is_compiled_quickly_and_what_is_optimised_give_the_same_bits(
+    models: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The optimised one takes over as soon as there is much to do."""
+    batch, told = Batch(models.heat), list[str]()
+    compiled = compiling._compile
+    monkeypatch.setattr(
+        compiling, "_compile", lambda files, target, way: told.append(way) or compiled(files, target, way)
+    )
+    monkeypatch.setattr(batch_library, "_LOADED", {})
+    monkeypatch.setattr(batch_library, "_WORK", Counter())
+    zig = compiling.cache_folder() / "zig"
+    for kind in ("global", "local"):
+        monkeypatch.setenv(f"ZIG_{kind.upper()}_CACHE_DIR", str(zig / kind))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    arrays = batch.vectors(spread(30, governor__w=(50, 300), load__tau=(-50, 50), housing__A=(0.2, 2)))
+    quick, warm = batch.steady(*arrays), batch.warmup(DUTY, *arrays)
+    assert told == ["-O0", "-O0"]
+    monkeypatch.setattr(batch_library, "LITTLE", 59)
+    assert same(quick, batch.steady(*arrays)) and same(warm, batch.warmup(DUTY, *arrays))
+    assert told == ["-O0", "-O0", "-O2", "-O2"]
 
 
 def test_a_start_where_the_model_has_no_value() -> None:

@@ -95,14 +95,23 @@ def test_the_source_compiles_without_a_warning(heat_fmu: Path, rc_fmu: Path, tmp
         assert zig(*flags, "-o", str(tmp_path / "all.o"), str(source)).stderr == ""
 
 
-def test_the_source_gives_the_binary_again(heat_fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_source_gives_the_binary_again_optimised_or_not(
+    models: SimpleNamespace, heat_fmu: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both give the same digits."""
     cache = compiling.cache_folder() / "zig"
     for kind in ("global", "local"):
         monkeypatch.setenv(f"ZIG_{kind.upper()}_CACHE_DIR", str(cache / kind))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     source = content(heat_fmu)["sources/all.c"].decode()
-    assert compiling.binary(source, compiling.host_platform()) == binary_of(heat_fmu)[1]
+    host, quick = compiling.host_platform(), binary_of(heat_fmu)[1]
+    assert compiling.binary(source, host, ways=(compiling.QUICK,)) == quick
     assert len(list((tmp_path / "gearheat" / "binaries").iterdir())) == 1
+    monkeypatch.delenv("GEARHEAT_COMPILE")
+    optimised = export(models.heat, tmp_path / "heat.fmu")
+    assert compiling.binary(source, host) == binary_of(optimised)[1] != quick
+    runs = [play(fmu, {}, 7200, 60) for fmu in (heat_fmu, optimised)]
+    assert all(runs[0][name].tobytes() == runs[1][name].tobytes() for name in ("oil.T", "gears.P_loss"))
 
 
 @linux

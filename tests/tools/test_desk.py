@@ -135,6 +135,8 @@ def test_a_german_table_becomes_a_diagnosis_by_clicks_and_the_other_sheets_open(
         browser.open(address)
         browser.drop(".q-uploader", "kaputt.csv", "a;b\n1;2;3\n")
         browser.wait(f"{SAID}.includes('kaputt.csv line 2: 3 cells under 2 column names')")
+        with urlopen(f"{address}files/kaputt.csv") as kept:
+            assert kept.read() == b"a;b\n1;2;3\n"
         browser.drop(".q-uploader", "messung.csv", TABLE)
         browser.wait(f"{SAID}.includes('Gehäuse [°C]')")
         assert not browser.js("document.querySelectorAll('.problem').length")

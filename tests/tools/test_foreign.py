@@ -198,10 +198,10 @@ def test_code_that_ends_crashes_or_hangs_takes_nothing_with_it(gearheat, tank, d
 
 def test_a_binary_of_the_cache_is_used_only_as_it_was_written(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(compiling, "_compile", lambda files, target: b"made")
+    monkeypatch.setattr(compiling, "_compile", lambda files, target, way: b"made")
     compiling.binary("int x;", compiling.host_platform())
     (kept,) = (tmp_path / "cache" / "gearheat" / "binaries").iterdir()
-    monkeypatch.setattr(compiling, "_compile", lambda files, target: b"anew")
+    monkeypatch.setattr(compiling, "_compile", lambda files, target, way: b"anew")
     asked = ("int x;", compiling.host_platform())
     assert compiling.binary(*asked) == b"made"
     content = kept.read_bytes()
@@ -210,7 +210,7 @@ def test_a_binary_of_the_cache_is_used_only_as_it_was_written(tmp_path, monkeypa
     if os.name != "nt":
         assert [folder.stat().st_mode & 0o77 for folder in (kept.parent, kept.parents[1])] == [0, 0]
         kept.parent.chmod(0o777)
-        monkeypatch.setattr(compiling, "_compile", lambda files, target: b"third")
+        monkeypatch.setattr(compiling, "_compile", lambda files, target, way: b"third")
         assert compiling.binary(*asked) == b"third"
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gearheat as gh
 import numpy as np
 import pytest
-from gearheat.fmu import compiling
 from gearheat.fmu.export import export
 from gearheat.model.errors import GearheatError, ScenarioError
 from gearheat.scenarios.load import load
@@ -70,8 +69,7 @@ def test_a_load_holds_against_either_rotation_over_time(rig, gearheat, tmp_path)
 
 
 @pytest.mark.parametrize("count", COUNTS)
-def test_runs_and_fmus_take_loads_and_signed_torques_alike(rig, count, tmp_path, monkeypatch):
-    monkeypatch.setattr(compiling, "OPTIMISE", "-O0")
+def test_runs_and_fmus_take_loads_and_signed_torques_alike(rig, count, tmp_path):
     scenario = load(rig(count))
     point = gh.steady(scenario)
     begun = {f"{body}.T": point[f"{body}.T"] for body in ("oil", "wall", "gears", "shafts", "surface")}

@@ -143,13 +143,13 @@ class Weighing:
     def run(self) -> Found:
         """Everything."""
         self.keep_null()
-        self._fit_alone(self.null, self.first, self.options.wanted)
-        for k in range(LOOKS if self.p_any < QUIET else 1):
+        looks = LOOKS if self.p_any < QUIET else 1
+        for k in range(looks):
             best = self.leader().fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
-                if k == 1:
+                if k == min(1, looks - 1):
                     self._fit_alone(near, look)
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
@@ -210,13 +210,12 @@ class Weighing:
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
-    def _fit_alone(self, near: Fit, look: screen.Look, wanted: Collection[str] = ()) -> None:
+    def _fit_alone(self, near: Fit, look: screen.Look) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
-        for start, logs in self._promising(look, set(), n, wanted):
-            for aside in dict.fromkeys((self.problem.aside, self.whole.aside)):
-                beside = (frozenset[str](), aside)
-                self._fit_joined(near, self.whole.without(aside), start, beside, {start.acting.id: logs})
+        for start, logs in self._promising(look, set(), n, self.options.wanted):
+            beside = (frozenset[str](), self.problem.aside)
+            self._fit_joined(near, self.problem, start, beside, {start.acting.id: logs})
 
     def _fit_joined(
         self,
