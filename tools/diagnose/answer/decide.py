@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ..infer.evidence import White
@@ -124,16 +123,16 @@ def temper(found: Found) -> Found:
     hidden = invisible(found)
     found = replace(found, hypotheses=tuple(h for h in found.hypotheses if not hidden.intersection(h.causes)))
     logs = np.array([h.log_joint for h in found.hypotheses])
-    logs -= logsumexp(logs)
+    logs -= np.logaddexp.reduce(logs)
     keys, tempered = answer_keys(found), logs.copy()
     for key in filter(None, dict.fromkeys(keys)):
         own = [k for k, other in enumerate(keys) if other == key]
         priors = {frozenset(h.causes): found.prior(h.causes) for h in (found.hypotheses[k] for k in own)}
-        prior = logsumexp(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
-        tempered[own] += (1 - POWER) * (prior - logsumexp(logs[own]))
+        prior = np.logaddexp.reduce(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
+        tempered[own] += (1 - POWER) * (prior - np.logaddexp.reduce(logs[own]))
     wrong = np.array([bool(key) for key in keys])
     if wrong.any():
-        tempered[wrong] += logsumexp(logs[wrong]) - logsumexp(tempered[wrong])
+        tempered[wrong] += np.logaddexp.reduce(logs[wrong]) - np.logaddexp.reduce(tempered[wrong])
     return replace(found, probabilities=np.exp(tempered))
 
 

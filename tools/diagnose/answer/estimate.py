@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from scipy.special import logsumexp
 from scipy.stats import norm
 
 from ....scenarios.measured.table import Campaign, Sensor
@@ -135,7 +134,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     for size in SPREADS:
         beside = White.of(V + size**2 * one)
         logs.append(beside.log_density(beside(r)))
-    share = np.cumsum(np.exp(np.array(logs) - logsumexp(logs)))
+    share = np.cumsum(np.exp(np.array(logs) - np.logaddexp.reduce(logs)))
     low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
     unit, (low, value, high) = convert(size_of, [size_of.sd * v for v in (low, value, high)])
@@ -151,7 +150,7 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
             own = {spread.form: 1.0}
         elif cause in h.forms:
             logs = h.forms[cause]
-            scale = logsumexp(list(logs.values()))
+            scale = np.logaddexp.reduce(list(logs.values()))
             own = {name: float(np.exp(value - scale)) for name, value in logs.items()}
         else:
             own = {h.fit.look.acting[h.fit.causes.index(cause)].formula.form.name: 1.0}

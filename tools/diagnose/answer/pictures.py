@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
-from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ....model.core.faults import name_all
@@ -135,8 +134,8 @@ def views(found: Found) -> tuple[View, ...]:
         effects = white(first.effects[mine] - tie.T @ given(first.effects[~mine]))
         left = white(deviation)
         logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), low, high)
-        total = logsumexp([logsumexp(logs), found.critical])
-        chances = {c: float(np.exp(logsumexp(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
+        total = np.logaddexp.reduce([np.logaddexp.reduce(logs), found.critical])
+        chances = {c: float(np.exp(np.logaddexp.reduce(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
         ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])
         s, rows = o.read[i], o.row[o.kind == i]
         told.append(

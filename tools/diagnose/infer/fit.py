@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
-from scipy.special import logsumexp
 
 from ....model.errors import SolveError
 from .evidence import WIDTHS, White, log_bayes_factor
@@ -327,7 +326,7 @@ class _Line:
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
         form, short = list(FORM)[int(np.argmax(logs))], self._short(noise)
-        return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior - short, form, short)
+        return Fit(look, noise, cost, float(np.logaddexp.reduce(logs)) + noise.log_prior - short, form, short)
 
     def _short(self, noise: Noise) -> float:
         """What the slopes promise of log likelihood beyond here, 0 where that is little; sizes stay at their bounds."""

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from ..model.formula import Formula
 from ..model.noise import Term
@@ -126,7 +125,7 @@ class Found:
         hypotheses = tuple(replace(h, log_joint=h.log_joint + b) for h, b in zip(self.hypotheses, by, strict=True))
         with np.errstate(divide="ignore"):
             logs = np.log(self.probabilities) + by
-        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - logsumexp(logs)))
+        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - np.logaddexp.reduce(logs)))
 
     def log_bayes_factor(self, causes: Iterable[str]) -> float:
         """Of causes against none, free of their prior; nothing of causes that the search did not ask about.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.special import logsumexp, ndtri
+from scipy.special import ndtri
 
 from ..library.cause import Mostly
 from ..model.formula import Formula
@@ -69,7 +69,7 @@ class Look:
         found = np.full(n, -np.inf)
         for k in np.unique(self.owner):
             own = self.log_bf[self.owner == k]
-            found[k] = logsumexp(own) - np.log(len(own))
+            found[k] = np.logaddexp.reduce(own) - np.log(len(own))
         return found
 
     def start(self, formula: int) -> Start:
@@ -162,7 +162,7 @@ def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarra
         logs.append(view.log + log_bayes_factors(s, q, low, high))
         sizes.append(np.clip(s / (q + 0.1), low, high))
     best = np.argmax(logs, axis=0)
-    log_bf = logsumexp(logs, axis=0) - np.log(len(views))
+    log_bf = np.logaddexp.reduce(logs, axis=0) - np.log(len(views))
     return Look(candidates, owner, effects, white[0], tuple(views), log_bf, np.choose(best, sizes))
 
 
@@ -188,5 +188,5 @@ def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
     for view in found.views:
         g, e = view.white(found.effects), view.white(E)
         own = log_bayes_factors((g.T @ e).T, (g**2).sum(axis=0), low, high) + weights
-        logs.append(logsumexp(own, axis=1) + view.white.log_densities(e) - none + view.prior)
-    return np.asarray(logsumexp(logs, axis=0) - np.log(len(logs)))
+        logs.append(np.logaddexp.reduce(own, axis=1) + view.white.log_densities(e) - none + view.prior)
+    return np.asarray(np.logaddexp.reduce(logs, axis=0) - np.log(len(logs)))

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
 from .evidence import White, averaged, by_width, mass_inside, prior_mass, split_error
 from .prior import SAME, Prior, kind
@@ -204,7 +203,9 @@ class Whitened:
                 logs = logs + np.log(np.maximum(inside, 1e-300))
                 best = int(np.argmax(logs))
                 own[i] = tried[best]
-                more[i] = float(logsumexp(logs) - np.log(len(logs)) - logs[best]) + np.log(max(inside[best], 1e-300))
+                more[i] = float(np.logaddexp.reduce(logs) - np.log(len(logs)) - logs[best]) + np.log(
+                    max(inside[best], 1e-300)
+                )
         _, _, log = self.beside(members, own.tolist())
         beside = [k for k, _ in self.scatter.beside]
         whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])

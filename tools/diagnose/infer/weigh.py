@@ -11,7 +11,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ....model.errors import SolveError
@@ -132,7 +131,7 @@ class Weighing:
     def ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
         weights = self.first.weights + [self.prior.share[c.id] for c in self.first.candidates]
-        seen = float(logsumexp(self.first.log_bf + weights))
+        seen = float(np.logaddexp.reduce(self.first.log_bf + weights))
         if (known := self.options.critical) is not None:
             self.drawn, self.critical, self.p_any = np.zeros(0), known, 0.0 if seen > known else 1.0
             return
@@ -288,7 +287,9 @@ class Weighing:
         members: dict[Key, list[sets.TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
-        each = [_Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()]
+        each = [
+            _Combination(key, own[0], float(np.logaddexp.reduce([s.log for s in own]))) for key, own in members.items()
+        ]
         return sorted(each, key=lambda c: -c.log)
 
     def _key(self, s: sets.TermSet) -> Key:
@@ -364,7 +365,7 @@ class Weighing:
             self.null,
             self.first,
             tuple(found),
-            np.exp(logs - logsumexp(logs)),
+            np.exp(logs - np.logaddexp.reduce(logs)),
             self.p_any,
             self.critical,
             self.drawn,
