@@ -201,7 +201,7 @@ def test_a_folder_from_which_no_code_runs_is_told(
     monkeypatch.setattr(os, "statvfs", lambda _: SimpleNamespace(f_flag=os.ST_NOEXEC))
     with pytest.raises(FmuError, match=r"no code runs from that file system \(noexec\). Set TMPDIR"):
         Player(broken)
-    monkeypatch.setattr(batch_library, "binary", lambda *_: b"")
+    monkeypatch.setattr(batch_library, "binary", lambda *_, **__: b"")
     with pytest.raises(FmuError, match=r"noexec"):
         batch_library.load("")
     assert Path.cwd() == here

@@ -23,7 +23,9 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the libraries a
 def facts(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("sources")
     made = {"rc": (models.rc, None), "heat": (models.heat, None), "planetary": planetary()}
-    return {name: unpacked(flat, folder / name, start) for name, (flat, start) in made.items()}
+    with pytest.MonkeyPatch.context() as environment:  # optimised, as for those who get it
+        environment.delenv("GEARHEAT_COMPILE", raising=False)
+        return {name: unpacked(flat, folder / name, start) for name, (flat, start) in made.items()}
 
 
 def rebuilt(facts: Path, compiler: Compiler, folder: Path, *options: str) -> str:

@@ -132,7 +132,8 @@ class Reader:
     def _commands(self, block: Block) -> Iterator[str]:
         for words, expected in block.commands():
             if not self._runs(block):
-                read(self.program, words[1:])
+                if words[0] == "gearheat":
+                    read(self.program, words[1:])
                 continue
             code, out = self._run(words)
             if code != 0:
