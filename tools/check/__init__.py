@@ -15,6 +15,7 @@ import tempfile
 import time
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ...model.errors import suggestion
@@ -178,12 +179,16 @@ def main(chosen: Sequence[str] = ()) -> int:
             )
         )
         return BAD_INPUT
-    failed = []
-    for name in chosen or [name for name in known if name not in NAMED]:
+
+    def attempt(name: str) -> bool:
         began = time.perf_counter()
         code = known[name]()
         note(f"== {name}: {'passed' if code == 0 else 'FAILED'} in {time.perf_counter() - began:.1f} s")
-        if code:
-            failed.append(name)
+        return code == 0
+
+    links()  # before two checks make them at once
+    wanted = chosen or [name for name in known if name not in NAMED]
+    with ThreadPoolExecutor(2) as pool:  # the tests begin while one processor looks at types
+        failed = [name for name, passed in zip(wanted, pool.map(attempt, wanted), strict=True) if not passed]
     note(f"== {'failed: ' + ', '.join(failed) if failed else 'all passed'}")
     return 1 if failed else 0

@@ -12,7 +12,7 @@ from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.scenarios.measured.card import read_card
+from gearheat.scenarios.measured.card import Card, read_card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.scenarios.nuisances import Nuisance
@@ -195,3 +195,18 @@ def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
     found = march(plant, phases, x0, plant.p[None, None, None], np.ones((1, 1)))
     expected = steady(flat, scenario.operating_point)
     assert found.y[0, 0] == pytest.approx([expected[q.name][-1] for q in flat.states], abs=1e-6)
+
+
+def test_a_steady_state_at_the_steep_middle_of_a_thermostat_is_met(tmp_path: Path) -> None:
+    scenario, path = load("wind_turbine"), tmp_path / "data.csv"
+    flat, load_ = scenario.spec.flat(), 5000.0
+    state = steady(flat, {"generator.w": 1800 * np.pi / 30, "generator.tau": -load_, "nacelle.T": 298.15}).columns
+    read = {"T_sump_C": "sump.T", "T_bearing1_C": "bearing_1.T", "T_bearing2_C": "bearing_2.T"}
+    values = {"n_hss_rpm": 1800.0, "T_hss_Nm": load_, "T_nacelle_C": 25.0}
+    values |= {column: state[name][0] - 273.15 for column, name in read.items()}
+    path.write_text("\n".join([",".join(values), *[",".join(f"{v:.6f}" for v in values.values())] * 2]))
+    data = read_campaign(path, scenario, Card())
+    given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
+    plant = Plant.of(scenario.spec, (), ("housing.C",), given, shown)
+    found = Observed(plant, data, (), {}, {}).shown_by(np.zeros(0), ())
+    assert found == pytest.approx(np.repeat([state[name][0] for name in shown], 2), abs=1e-3)

@@ -46,8 +46,9 @@ static const double A[STAGES][STAGES] = {
     {0.5 * (1 - GAMMA) / GAMMA, 1, 0},
     {(-1.5 * GAMMA + 4 - 0.25 / GAMMA), (1.5 * GAMMA - 5 + 1.25 / GAMMA), 1}};
 
-/* Newton's corrections at most; size over the nominals of the last; longest one; a temperature of a runaway [K]. */
-enum { MOST = 14 };
+/* Newton's corrections at most, and those taken whole: halves meet at the steep middle of a thermostat, where whole ones
+   go to and fro. Size over the nominals of the last; longest one; a temperature of a runaway [K]. */
+enum { MOST = 34, WHOLE = 14 };
 static const double SETTLED = 1e-4, LONGEST = 10, RUNAWAY = 700;
 
 #define EACH for (int l = 0; l < LANES; l++)
@@ -184,7 +185,7 @@ static void newton(Runs *R, lanes *w, lanes length, whole from, int *left) {
         if (!(own <= size)) size = own;
       }
       if (!isfinite(size)) open[l] = 0;
-      const double part = size > LONGEST ? LONGEST / size : 1;
+      const double part = size > LONGEST ? LONGEST / size : tries < WHOLE || size < SETTLED ? 1 : 0.5;
       for (whole i = from; i < P->nw && open[l]; i++) w[i][l] -= part * R->left[i - from][l];
       if (open[l] && size < SETTLED) open[l] = left[l] = 0;
     }
