@@ -42,8 +42,8 @@ _SIGNATURES = {
 WIDER = {"avx512f": 8, "avx2": 4}
 #: Rows of a batch side by side with any of them: two vectors at once do not wait for each other.
 BESIDE = 8
-#: Functions by name, source and whether they were compiled quickly, and what each source has had to do.
-_LOADED: dict[tuple[str, str, bool], Any] = {}
+#: Functions by name, source and how much they may be optimised, and what each source has had to do.
+_LOADED: dict[tuple[str, str, tuple[str, ...]], Any] = {}
 _WORK: Counter[str] = Counter()
 #: Rows or steps up to which a source is compiled quickly: without optimising, each takes 15 microseconds longer.
 LITTLE = 50_000
@@ -69,12 +69,12 @@ def driver(name: str, source: str, work: int) -> Any:
     """
     with _LOCK:
         _WORK[source] += work
-        key = name, source, _WORK[source] <= LITTLE
-        if key not in _LOADED:
-            function = getattr(load(source, (THOROUGH, QUICK) if key[2] else (THOROUGH,)), name)
+        ways = (THOROUGH, QUICK) if _WORK[source] <= LITTLE else (THOROUGH,)
+        if (name, source, ways) not in _LOADED:
+            function = getattr(load(source, ways), name)
             function.argtypes, function.restype = _SIGNATURES[name], ctypes.c_int
-            _LOADED[key] = function
-        return _LOADED[key]
+            _LOADED[name, source, ways] = function
+        return _LOADED[name, source, ways]
 
 
 @cache

@@ -94,10 +94,12 @@ class Slave(ABC):
             values: their values
         """
         name, number = self._setters[kind]
-        held: np.ndarray = np.array(values, dtype=number)
-        n = len(references)
-        more = (_SIZE,) * self._counted
-        self._function(name, *_VALUES, *more)(references.ctypes.data, n, held.ctypes.data, *(n for _ in more))
+        self._hand(name, references, np.array(values, dtype=number))
+
+    def _hand(self, name: str, references: np.ndarray, values: np.ndarray) -> None:
+        """Call a function that sets values."""
+        n, more = len(references), (_SIZE,) * self._counted
+        self._function(name, *_VALUES, *more)(references.ctypes.data, n, values.ctypes.data, *(n for _ in more))
 
     def _heard(self, status: int, message: bytes | None) -> None:
         if status > 1 and message:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,6 @@ class WebSlave(Slave):
     """An instance whose memory is the module's: what goes in and out is copied. It reaches nothing of the machine."""
 
     _setters = Slave3._setters
-    _counted = True
 
     def _open(self, arguments: dict[str, Any]) -> Any:
         if find_spec("wasmtime") is None:
@@ -74,16 +72,8 @@ class WebSlave(Slave):
 
         self.set, self.get, self.step = put, get, step
 
-    def put(self, kind: str, references: np.ndarray, values: Sequence[float]) -> None:
-        """As `Slave.put`.
-
-        Args:
-            kind: the type
-            references: value references
-            values: their values
-        """
-        name, number = self._setters[kind]
-        named, given = self._place(references.tobytes(), np.array(values, dtype=number).tobytes())
+    def _hand(self, name: str, references: np.ndarray, values: np.ndarray) -> None:
+        named, given = self._place(references.tobytes(), values.tobytes())
         self._function(name)(named, len(references), given, len(references))
 
     def _place(self, *parts: bytes) -> list[int]:

@@ -203,9 +203,8 @@ class Whitened:
                 logs = logs + np.log(np.maximum(inside, 1e-300))
                 best = int(np.argmax(logs))
                 own[i] = tried[best]
-                more[i] = float(np.logaddexp.reduce(logs) - np.log(len(logs)) - logs[best]) + np.log(
-                    max(inside[best], 1e-300)
-                )
+                mean = np.logaddexp.reduce(logs) - np.log(len(logs))
+                more[i] = float(mean - logs[best]) + np.log(max(inside[best], 1e-300))
         _, _, log = self.beside(members, own.tolist())
         beside = [k for k, _ in self.scatter.beside]
         whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])

@@ -287,10 +287,8 @@ class Weighing:
         members: dict[Key, list[sets.TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
-        each = [
-            _Combination(key, own[0], float(np.logaddexp.reduce([s.log for s in own]))) for key, own in members.items()
-        ]
-        return sorted(each, key=lambda c: -c.log)
+        logs = {key: float(np.logaddexp.reduce([s.log for s in own])) for key, own in members.items()}
+        return sorted((_Combination(key, own[0], logs[key]) for key, own in members.items()), key=lambda c: -c.log)
 
     def _key(self, s: sets.TermSet) -> Key:
         terms = self.linear.terms
