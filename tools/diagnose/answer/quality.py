@@ -20,7 +20,6 @@ from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
 from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, ResidualMean, VarianceComponent
-from .gain import levels
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.0
@@ -249,7 +248,7 @@ def group_rows(campaign: Campaign) -> dict[str, dict[str, np.ndarray]]:
 def _along(campaign: Campaign, sensor: Sensor) -> dict[str, np.ndarray]:
     """Rows by the levels of a given sensor, neighbours joined where there are many."""
     values = np.abs(campaign.values[sensor.name])
-    each = levels(values)
+    each = channels.levels(values)
     joined = [np.concatenate(part) for part in _split(each, MOST)]
     unit = channels.unit(sensor)
     return {f"{channels.difference(sensor, float(values[rows].mean())):.4g} {unit}": rows for rows in joined}
