@@ -57,7 +57,8 @@ def march(
         wanted: the knobs by which derivatives are computed, none of any kind where it is None; those by other knobs
             hold what their readings alone say
     """
-    (n, _, given, height), reads, shown = phases.local0.shape, sum(map(len, phases.read)), len(plant.shown)
+    n, given, height = len(x0), *phases.local0.shape[2:]
+    reads, shown = sum(map(len, phases.read)), len(plant.shown)
     sizes = {"by": (height, len(plant.knobs) + 1), "local": (given, height)}
     sizes["tried"] = (len(p) - 1, height, len(plant.tried))
     runs = n if wanted is not None else 0

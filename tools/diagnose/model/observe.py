@@ -9,10 +9,10 @@ import numpy as np
 
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
-from .duty import duty
+from .duty import Phases, duty
 from .entries import Entries
 from .formula import Formula
-from .march import Marched, Phases, march
+from .march import Marched, march
 from .plant import Plant
 from .slopes import Slope, same, total
 
