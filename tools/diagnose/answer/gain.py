@@ -18,6 +18,7 @@ from ..infer.found import Found
 from ..infer.weigh import Options
 from ..model.observe import Observed
 from . import channels
+from .estimate import loose_variance
 from .findings import Gain
 
 #: Draws of the bootstrap.
@@ -114,9 +115,8 @@ def _gain(
 
 def noise_floor(found: Found, sensor: int) -> float:
     """Standard deviation of one reading: its own scatter, that of the inputs and of the day, as found."""
-    o, noise = found.problem.data, found.hypotheses[0].fit.noise
-    loose = sum(np.exp(2 * s) * np.diag(t.matrix) for t, s in zip(noise.loose, noise.scales, strict=True))
-    return float(np.sqrt(np.mean(np.asarray(loose)[found.problem.own][o.kind == sensor])))
+    mine = found.problem.data.kind == sensor
+    return float(np.sqrt(np.mean(loose_variance(found.hypotheses[0].fit)[found.problem.own][mine])))
 
 
 def rms(values: np.ndarray) -> float:
