@@ -59,7 +59,7 @@ def march(
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
     reads, shown = sum(map(len, phases.read)), len(plant.shown)
-    sizes = {"by": (height, len(plant.knobs) + 1), "local": (given, height)}
+    sizes: dict[str, tuple[int, ...]] = {"by": (height, len(plant.knobs) + 1), "local": (given, height)}
     sizes["tried"] = (len(p) - 1, height, len(plant.tried))
     runs = n if wanted is not None else 0
     found = {"y": np.empty((n, reads, shown))}
