@@ -227,13 +227,6 @@ class Problem:
         o, number = self.campaigns[k], aside.number - sum(sizes[:k])
         return k, aside.sensor or o.read[o.kind[number]].name
 
-    def touched(self, aside: Aside, look: Look) -> frozenset[int]:
-        """The compared readings that a reading has to do with."""
-        if not aside.sensor:
-            return frozenset([aside.number])
-        effect = np.abs(dict(self.inputs(look))[aside.sensor][:, aside.number])
-        return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
-
     def bends(self, formulas: Sequence[Formula]) -> list[list[tuple[Acting, np.ndarray]]]:
         """Of each formula, as the file has the rig: far out, and its secant less its slope (M,), of one half width."""
         at, new = np.zeros(self.nz + 1), [f for f in formulas if f not in self._bends]

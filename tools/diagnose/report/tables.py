@@ -81,14 +81,7 @@ def quality(findings: Findings) -> list[Table]:
         for v in q.variance
     ]
     repeats = [
-        (
-            p.condition,
-            p.channel,
-            str(r.test),
-            number(r.order),
-            with_unit(r.sum, p.unit),
-            with_unit(r.difference, p.unit),
-        )
+        (p.condition, p.channel, str(r.test), number(r.order), *(with_unit(v, p.unit) for v in (r.sum, r.difference)))
         for p in q.repeated
         for r in p.repeats
     ]
