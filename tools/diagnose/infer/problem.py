@@ -11,10 +11,10 @@ from typing import Self
 import numpy as np
 
 from ....model.errors import SolveError
-from ..model.entries import Term, summed
+from ..model.entries import Seen, Term, summed
 from ..model.formula import Formula
 from ..model.noise import alike, input_scatter, stacked, terms
-from ..model.observe import Observed, Seen
+from ..model.observe import Observed
 from .scales import most_likely
 
 #: Half widths of its prior to which a cause is followed.

@@ -63,47 +63,27 @@ def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
     absent = np.arange(height) >= np.bincount(c.test)[:, None]
     dwell = np.where(absent, 0.0, np.where(np.isinf(c.dwell), STEADY.sum(), c.dwell)[rows])
     stop = np.where(absent, 0.0, c.stop[rows])
-    lengths, row, steps = [], [], []
-    read: list[tuple[int, ...]] = []
-    local = []
     one = np.eye(height)
     room = np.array([s.kind == "ambient" for s in c.given], dtype=bool)
     moving = np.array([s.kind in RESTS for s in c.given], dtype=bool)
     shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else LOGGED if c.series else DWELL
     reached = np.tile(one[0], (n, 1))  # weights of the rows in the room's temperature so far
+    phases: list[tuple[np.ndarray, np.ndarray, int, np.ndarray, tuple[int, ...]]] = []
     for h in range(height):
         if h:
             share = (stop[:, h] / np.maximum(stop[:, h] + dwell[:, h], 1e-9))[:, None]
             after = reached + share * (one[h] - reached)
-            lengths.append(stop[:, h])
             weights = np.zeros((2, n, n_given, height))
             weights[0][:, room], weights[1][:, room] = reached[:, None], after[:, None]
             weights[:, :, ~room & ~moving] = one[h]
-            local.append(weights)
-            row.append(h)
-            steps.append(STOP)
-            read.append(())
+            phases.append((stop[:, h], weights, h, STOP, ()))
             reached = after
         weights = np.tile(one[h], (2, n, n_given, 1))
         if not c.steady:
             weights[0][:, room] = reached[:, None]
         reached = np.tile(one[h], (n, 1))
-        lengths.append(dwell[:, h])
-        local.append(weights)
-        row.append(h)
-        steps.append(shares)
-        read.append(READ if c.series else (len(shares) - 1,))
-    whole = np.array(local)
+        phases.append((dwell[:, h], weights, h, shares, READ if c.series else (len(shares) - 1,)))
+    lengths, local, row, steps, read = zip(*phases, strict=True)
+    begin, end = np.array(local).transpose(1, 2, 0, 3, 4)
     empty = np.empty((n, len(row), 0))
-    return Phases(
-        np.array(lengths).T,
-        empty,
-        empty,
-        tuple(row),
-        tuple(steps),
-        tuple(read),
-        whole[:, 0].swapaxes(0, 1),
-        whole[:, 1].swapaxes(0, 1),
-        starts,
-        c.steady,
-    )
+    return Phases(np.array(lengths).T, empty, empty, row, steps, read, begin, end, starts, c.steady)
