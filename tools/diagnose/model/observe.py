@@ -9,10 +9,9 @@ import numpy as np
 
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
-from .duty import Phases, duty
 from .entries import Measured, Seen
 from .formula import Formula
-from .march import Marched, march
+from .march import Marched, Phases, duty, march
 from .plant import Plant
 
 #: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
