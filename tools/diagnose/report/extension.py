@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....model.core.declare import Output, Parameter, list_declared
+from ....model.core.declare import Output, list_declared
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
@@ -23,6 +23,7 @@ from ..answer.estimate import posterior
 from ..answer.findings import Calibrated
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Form, Row, Theta
+from ..library.check import parameters
 from ..setting import Setting
 from . import phrases
 from .phrases import name_of
@@ -147,10 +148,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
     with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
-    declarations = {p.name: list_declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
-    base = {f"{name}.{key}": d.default for name, own in declarations.items() for key, d in own.items()}
-    base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
-    changed = None if form.spread else _changed(form, one.theta, base)
+    changed = None if form.spread else _changed(form, one.theta, parameters(with_parts))
     if not changed:
         return scenario, [f"{outside} {one.doc if form.values is None else 'It differs from test to test.'}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
