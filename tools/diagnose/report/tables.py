@@ -102,7 +102,7 @@ def causes(findings: Findings) -> list[Table]:
     """Causes with their sizes, hypotheses, and what each channel says on its own."""
     listed = list_causes(findings)
     ranked = [
-        (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), p_value(c.q, "q"), c.id) for c in listed
+        (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), c.id) for c in listed
     ]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
     joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
@@ -118,7 +118,7 @@ def causes(findings: Findings) -> list[Table]:
         leading = ", ".join(f"{name_of(s.id)} {percent(s.probability, s.mc_error)}" for s in v.causes[:NAMED])
         by_channel.append((v.channel, v.asks, p_value(v.p), percent(v.nothing), leading))
     return [
-        Table("Causes", ("probability", "cause", "size (95 %)", "where", "other half", "id"), ranked),
+        Table("Causes", ("probability", "cause", "size (95 %)", "where", "id"), ranked),
         Table("Sizes and shapes", ("cause", "parameter", "value (95 %)", "meaning"), sizes),
         Table("Hypotheses", ("probability", "causes"), together),
         Table("What each channel says on its own", ("channel", "asks", "p", "nothing wrong", "causes"), by_channel),
