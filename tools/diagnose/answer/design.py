@@ -14,15 +14,14 @@ from ..infer.evidence import White
 from ..infer.found import Found
 from ..infer.problem import Acting, Look, Noise
 from ..infer.screen import limits
+from ..model.entries import Seen
 from ..model.noise import terms
-from ..model.observe import Observed, Seen
+from ..model.observe import Observed
 from ..setting import Setting
 from . import findings
 from .experiments import Check, Experiment, build_tests
 
 Pair = tuple[str, str]
-#: Distances below this are none [standard deviations].
-APART = 3.0
 #: A distance beyond this tells two causes apart as well as any.
 ENOUGH = 6.0
 #: What an experiment has to add to a distance [standard deviations].
@@ -92,7 +91,7 @@ def find_alike(effects: Effects, cause: str, size: float, like: Mapping[str, str
         return None
     distances = effects.distances(cause, size)
     declared = {o for o in distances if like[cause] and like[o].partition(":")[0] == like[cause].partition(":")[0]}
-    near = sorted((o for o in distances if distances[o] < APART or o in declared), key=lambda o: distances[o])
+    near = sorted((o for o in distances if distances[o] < findings.APART or o in declared), key=lambda o: distances[o])
     if not near:
         return None
     reason = like[cause].partition(":")[2].strip() if declared & set(near) else ""

@@ -9,10 +9,10 @@ import casadi as ca
 
 from ....model.laws.smooth import smooth_abs
 from ....model.parts.free_form import step
-from .cause import Cause, Form, Num, Row, Theta, Values
+from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, beside_own_law, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, linear, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -32,11 +32,11 @@ def causes(at: Context) -> Iterator[Cause]:
     roles = at.roles
     air = [f"{name}.surface" for name in roles.surfaces]
     if air:
-        yield _beside_own_law(_conducting(at, "cooling.air", air), roles.surfaces, at)
+        yield _conducting(at, "cooling.air", air, roles.surfaces)
         yield from emissivity(at)
     if roles.room and (roles.foundation or air):
         ports = [roles.bodies_of(name)[0] for name in roles.foundation] or air[:1]
-        yield _beside_own_law(_conducting(at, "cooling.foundation", ports), roles.foundation, at)
+        yield _conducting(at, "cooling.foundation", ports, roles.foundation)
     if roles.contacts:
         yield contact(at)
     if roles.oil_side:
@@ -50,14 +50,10 @@ def causes(at: Context) -> Iterator[Cause]:
     yield from scaled(at, "cooling.oil_flow")
 
 
-def _conducting(at: Context, name: str, ports: Sequence[str]) -> Cause:
-    """A cause of the table that is an extra conductance from some ports to the room."""
+def _conducting(at: Context, name: str, ports: Sequence[str], parts: Sequence[str]) -> Cause:
+    """A cause of the table: an extra conductance from some ports to the room, or parts that conduct otherwise."""
     known = entry(name, at)
-    return known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
-
-
-def _beside_own_law(cause: Cause, parts: Sequence[str], at: Context) -> Cause:
-    """A cause that is a conductance with forms by which parts between the machine and the room conduct more or less."""
+    cause = known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
     return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / at.ranges.rise)
 
 
@@ -67,12 +63,7 @@ def emissivity(at: Context) -> Iterator[Cause]:
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in paths)
     low, high = min(SHINY / brightest - 1, -BRIGHTER), max(1 / brightest - 1, BRIGHTER)
     size = replace(entry("cooling.emissivity", at).cause.size, low=low, high=high)
-    yield from scaled(at, "cooling.emissivity", paths, _linear, size=size)
-
-
-def _linear(size: Num) -> Num:
-    """A factor that may fall to nothing."""
-    return 1 + size
+    yield from scaled(at, "cooling.emissivity", paths, linear, size=size)
 
 
 def contact(at: Context) -> Cause:

@@ -1,12 +1,18 @@
-"""The measured vector of a campaign: readings at the ends of dwells, along logged courses, and dwells as logged."""
+"""The measured vector of a campaign: readings at the ends of dwells, along logged courses, and dwells as logged.
+
+Its scatter is a sum of terms. A term is a set of columns, each the effect of one independent standard normal number, or
+a variance of every entry of its own. Its scale is what the card states; where it is `loose` the data may change it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ....scenarios.measured.table import PLACES, Campaign
+from ....scenarios.nuisances import Nuisance
 
 #: Scatter of a dwell as logged, as a share of the stated one.
 DWELL = 0.02
@@ -66,3 +72,126 @@ class Entries:
         step = np.concatenate([np.full(n, k), np.tile(np.arange(k), len(logged))])
         share = np.array([*PLACES[:k], 1.0])[step]
         return Entries(kind, sensor, row, at, measured, repeat, place_row, step, share)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Readings (m,), by nuisances and parameters of causes (m, d), by the true values of the given sensors' readings.
+
+    `local` (m, given, H): by the reading of each given sensor in each row of the same test.
+    """
+
+    shown: np.ndarray
+    by: np.ndarray
+    local: np.ndarray
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
+
+    `loose` is the prior's standard deviation of its log scale.
+    """
+
+    name: str
+    columns: np.ndarray | None = None
+    variance: np.ndarray | None = None
+    loose: float = 0.0
+    covariance: np.ndarray | None = None
+
+    @property
+    def m(self) -> int:
+        """Number of entries."""
+        return len(next(part for part in (self.columns, self.variance, self.covariance) if part is not None))
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The covariance it stands for (m, m)."""
+        if self.covariance is not None:
+            return self.covariance
+        if self.variance is not None:
+            return np.diag(self.variance)
+        assert self.columns is not None
+        return np.asarray(self.columns @ self.columns.T)
+
+    @property
+    def rank(self) -> int:
+        """Number of its `effects`."""
+        return int((self.variance > 0).sum()) if self.variance is not None else self.effects.shape[1]
+
+    @property
+    def effects(self) -> np.ndarray:
+        """Columns (m, k) of a term that has columns or variances."""
+        if self.variance is not None:
+            return np.diag(np.sqrt(self.variance))[:, self.variance > 0]
+        assert self.columns is not None
+        return self.columns
+
+
+def summed(terms: Sequence[Term], scales: np.ndarray, m: int) -> np.ndarray:
+    """The covariance of some terms together (m, m).
+
+    Args:
+        terms: n of them
+        scales: logarithms of factors on their standard deviations (n,)
+        m: number of entries
+    """
+    columns, variance = [np.zeros((m, 0))], np.zeros(m)
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.columns is not None:
+            columns.append(factor * t.columns)
+        elif t.variance is not None:
+            variance += factor**2 * t.variance
+    whole = np.concatenate(columns, axis=1)
+    found = whole @ whole.T
+    found[np.diag_indices(m)] += variance
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.covariance is not None:
+            found += factor**2 * t.covariance
+    return np.asarray(found)
+
+
+class Measured:
+    """A campaign as arrays: the measured vector, and what is known of the rows.
+
+    Args:
+        campaign: its readings
+        nuisances: what may differ from the rig file
+    """
+
+    def __init__(self, campaign: Campaign, nuisances: Sequence[Nuisance]) -> None:
+        self.campaign, self.nuisances = campaign, tuple(nuisances)
+        counts = np.bincount(campaign.test)
+        self.height = int(counts.max())
+        starts = np.searchsorted(campaign.test, np.arange(campaign.n_tests))
+        self.half = np.arange(campaign.n) - starts[campaign.test]
+        #: Which row of the campaign each (test, half) is; the last of the test where it has fewer.
+        self.rows = starts[:, None] + np.minimum(np.arange(self.height), counts[:, None] - 1)
+        self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
+        self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
+        self.given, self.read = campaign.given, campaign.read
+        self.entries = Entries.of(campaign)
+        #: Channel and row of each of the m entries, and what was measured.
+        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
+        self.features = self._features()
+
+    @property
+    def m(self) -> int:
+        """Number of entries."""
+        return len(self.measured)
+
+    def _features(self) -> np.ndarray:
+        """Of the rows, in the order of `FEATURES`."""
+        c = self.campaign
+        humidity = np.nan_to_num(c.humidity, nan=0.5)[c.test]
+        oil = [s.name for s in c.sensors if s.kind == "oil_temp"]
+        room = [s.name for s in c.sensors if s.kind == "ambient"]
+        rise = self.sensors[oil[0]] - self.sensors[room[0]] if oil and room else np.full(c.n, 30.0)
+        dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
+        return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """A column whose missing values stand at the mean of the others."""
+    known = values[np.isfinite(values)]
+    return np.where(np.isfinite(values), values, known.mean() if len(known) else 0.0)

@@ -1,7 +1,8 @@
-"""Dwells of many tests, one after the other, with exact sensitivities: an implicit Runge-Kutta method of third order.
+"""Tests as runs of the rig, dwells and stops one after the other, with exact sensitivities.
 
-The discrete solution is differentiated, so its sensitivities are exact at any step. A steady state is the end of a very
-long dwell by Euler's implicit method: the last steps are Newton's. The march itself is in C.
+An implicit Runge-Kutta method of third order takes the steps. The discrete solution is differentiated, so its
+sensitivities are exact at any step. A steady state is the end of a very long dwell by Euler's implicit method: the last
+steps are Newton's. The march itself is in C.
 """
 
 from __future__ import annotations
@@ -14,7 +15,18 @@ from typing import Any
 import numpy as np
 
 from ....fmu.batch_library import share_rows
+from ....scenarios.measured.table import PLACES, Campaign
 from .plant import Plant, library, record
+
+#: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
+DWELL = (np.arange(1, 8) / 7) ** 1.2
+#: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
+LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
+READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())
+STOP = np.array([1.0])
+STEADY = 60.0 * 4.0 ** np.arange(14)
+#: A kind of sensor that reads zero where the machine stands.
+RESTS = ("torque", "speed", "power")
 
 
 @dataclass(frozen=True)
@@ -45,30 +57,65 @@ class Phases:
     steady: bool
 
 
-@dataclass(frozen=True)
-class Slopes:
-    """Derivatives of what is shown.
+def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
+    """All tests as runs: a dwell for each row, a stop before each but the first. A logged dwell is read along it, too.
 
     Args:
-        by: by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
-        local: by given readings of each row (N, given, H, reads, shown)
-        tried: by the plant's tried knobs at each further setting (N, S - 1, H, tried, reads, shown)
-    """
+        c: the campaign
+        rows: which of its rows each is (tests, H); the last of the test where it has fewer
+        starts: by how much the start temperature of a test follows the given readings of its first row (tests, given)
 
-    by: np.ndarray
-    local: np.ndarray
-    tried: np.ndarray
+    Returns:
+        phases without inputs
+    """
+    height = rows.shape[1]
+    n, n_given = c.n_tests, len(c.given)
+    absent = np.arange(height) >= np.bincount(c.test)[:, None]
+    dwell = np.where(absent, 0.0, np.where(np.isinf(c.dwell), STEADY.sum(), c.dwell)[rows])
+    stop = np.where(absent, 0.0, c.stop[rows])
+    one = np.eye(height)
+    room = np.array([s.kind == "ambient" for s in c.given], dtype=bool)
+    moving = np.array([s.kind in RESTS for s in c.given], dtype=bool)
+    shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else LOGGED if c.series else DWELL
+    reached = np.tile(one[0], (n, 1))  # weights of the rows in the room's temperature so far
+    phases: list[tuple[np.ndarray, np.ndarray, int, np.ndarray, tuple[int, ...]]] = []
+    for h in range(height):
+        if h:
+            share = (stop[:, h] / np.maximum(stop[:, h] + dwell[:, h], 1e-9))[:, None]
+            after = reached + share * (one[h] - reached)
+            weights = np.zeros((2, n, n_given, height))
+            weights[0][:, room], weights[1][:, room] = reached[:, None], after[:, None]
+            weights[:, :, ~room & ~moving] = one[h]
+            phases.append((stop[:, h], weights, h, STOP, ()))
+            reached = after
+        weights = np.tile(one[h], (2, n, n_given, 1))
+        if not c.steady:
+            weights[0][:, room] = reached[:, None]
+        reached = np.tile(one[h], (n, 1))
+        phases.append((dwell[:, h], weights, h, shares, READ if c.series else (len(shares) - 1,)))
+    lengths, local, row, steps, read = zip(*phases, strict=True)
+    begin, end = np.array(local).transpose(1, 2, 0, 3, 4)
+    empty = np.empty((n, len(row), 0))
+    return Phases(np.array(lengths).T, empty, empty, row, steps, read, begin, end, starts, c.steady)
 
 
 @dataclass(frozen=True)
 class Marched:
-    """What is shown (N, reads, shown), and its derivatives where they are asked for.
+    """What is shown and its derivatives, which are empty where they are not asked for.
 
     A run that has no solution, or runs away, holds NaN.
+
+    Args:
+        y: what is shown (N, reads, shown)
+        by: of it by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
+        local: by given readings of each row (N, given, H, reads, shown)
+        tried: by the plant's tried knobs at each further setting (N, S - 1, H, tried, reads, shown)
     """
 
     y: np.ndarray
-    slopes: Slopes | None
+    by: np.ndarray
+    local: np.ndarray
+    tried: np.ndarray
 
 
 def march(
@@ -92,17 +139,17 @@ def march(
             hold what their readings alone say
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
-    reads = sum(map(len, phases.read))
-    found = {"y": np.empty((n, reads, len(plant.shown)))}
-    if wanted is not None:
-        found["by"] = np.zeros((n, height, len(plant.knobs) + 1, reads, len(plant.shown)))
-        found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
-        found["tried"] = np.zeros((n, len(p) - 1, height, len(plant.tried), reads, len(plant.shown)))
-    result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
-    duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(wanted or ())))
-    places, run = [ctypes.byref(r) for r in (plant.record, duty, result)], library().march
+    reads, shown = sum(map(len, phases.read)), len(plant.shown)
+    sizes: dict[str, tuple[int, ...]] = {"by": (height, len(plant.knobs) + 1), "local": (given, height)}
+    sizes["tried"] = (len(p) - 1, height, len(plant.tried))
+    runs = n if wanted is not None else 0
+    found = {"y": np.empty((n, reads, shown))}
+    found |= {name: np.zeros((runs, *size, reads, shown)) for name, size in sizes.items()}
+    result = record(**{name: values if values.size else 0 for name, values in found.items()})
+    asked = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(wanted or ())))
+    places, run = [ctypes.byref(r) for r in (plant.record, asked, result)], library().march
     share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
-    return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if wanted is not None else None)
+    return Marched(**found)
 
 
 def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wanted: np.ndarray) -> Any:
