@@ -16,8 +16,10 @@ from .sweep_rows import Block, Job
 PATIENCE = 20.0
 #: Between two looks at which workers there are [s].
 LOOK = 1.0
-#: Blocks of a task at most, as a task costs 20 ms, and tasks that each thread of a worker gets at least.
-TOGETHER, SHARES = 8, 4
+#: Blocks of a task at most: a task costs 20 ms.
+TOGETHER = 8
+#: Tasks that each thread of a worker gets at least, where there are as many blocks.
+SHARES = 4
 
 
 def run_on_cluster(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
