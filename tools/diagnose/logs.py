@@ -141,7 +141,7 @@ def judged(
     formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
     scenario = inputs.scenario
-    made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, problem.data.plant, problem, {})
+    made = Setting(scenario, scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
     found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)
@@ -166,13 +166,7 @@ def composed(
     return replace(told, findings=with_words(findings))
 
 
-def _findings(
-    made: Setting,
-    found: Found,
-    decision: Decision,
-    inputs: Inputs,
-    data: Logs,
-) -> f.Findings:
+def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, data: Logs) -> f.Findings:
     """The findings without pictures and words."""
     logs = data.logs
     segments = sum(int(log.stretch.max()) + 1 for log in logs)

@@ -37,14 +37,12 @@ class Passed:
     """One pass over windows.
 
     Args:
-        log_likelihood: of each window (N,)
-        slope, curvature: of it, by the knobs (N, k), (N, k, k), the latter positive
+        slope, curvature: of the log likelihood, by the knobs (N, k), (N, k, k), the latter positive
         error: prediction errors (N, L, reads), NaN where nothing counts
         variance: of them (N, L, reads)
         shown: what the model shows (N, L, reads)
     """
 
-    log_likelihood: np.ndarray
     slope: np.ndarray
     curvature: np.ndarray
     error: np.ndarray
@@ -98,8 +96,8 @@ class Filter:
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 p[:, self.plant.place[path]] *= np.exp(exponent * z[:, j])
-            for path, weight in knob.shifted.items():
-                p[:, self.plant.place[path]] += weight * z[:, j]
+            for path in knob.shifted:
+                p[:, self.plant.place[path]] += z[:, j]
             if knob.sensor in self.given:
                 i = self.given.index(knob.sensor)
                 factor[:, i] *= np.exp(-z[:, j]) if knob.gain else 1.0
@@ -111,8 +109,8 @@ class Filter:
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 dp[:, self.plant.knobs.index(path), j] = exponent * p[:, self.plant.place[path]]
-            for path, weight in knob.shifted.items():
-                dp[:, self.plant.knobs.index(path), j] = weight
+            for path in knob.shifted:
+                dp[:, self.plant.knobs.index(path), j] = 1.0
         return p, dp, factor, shift, offset, by
 
     @property
@@ -197,7 +195,7 @@ class Filter:
             step=np.array([data.step]),
             tails=np.array([TAILS]),
         )
-        found = {"log_likelihood": np.zeros(n), "slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
+        found = {"slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
         found |= {name: np.full(data.read.shape, np.nan) for name in ("error", "variance", "shown")}
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
