@@ -185,8 +185,10 @@ def _directions(directions: Directions | None, table: Table) -> str:
             "model_side_states": [value for side in sides for value in side.states.tolist()],
         }
     told["model_state_directions"] = [] if directions is None else directions.states.T.ravel().tolist()
-    deviating = _array("const int", "model_deviating", [str(v.of) for v in table.of("deviation")])
-    return "\n".join([*(_array("const double", n, map(emit.number, v)) for n, v in told.items()), deviating])
+    texts = [_array("const double", name, map(emit.number, values)) for name, values in told.items()]
+    if directions is not None:
+        texts.append(_array("const int", "model_deviating", [str(v.of) for v in table.of("deviation")]))
+    return "\n".join(texts)
 
 
 class _Preset(NamedTuple):
