@@ -142,7 +142,8 @@ def test_what_all_answers_of_several_causes_share_is_said_first() -> None:
     made = ambiguous(answers=answers, causes=(*causes, cause("cooling.emissivity", 0.2)), sets=())
     assert made.says.verdict == (
         "Several causes act together. In all likely answers: zero error of the torque transducer (97 %), churning of"
-        " the oil or windage (90 %). Besides: cooling by the air (70 %), cooling by radiation (20 %)."
+        " the oil or windage (90 %). More likely than not: cooling by the air (70 %). Perhaps: cooling by radiation (20"
+        " %)."
     )
 
 
