@@ -26,6 +26,7 @@ from ..model.run.schedule import Schedule
 from .batch_library import (
     BESIDE,
     EXTRA,
+    FEW,
     Duty,
     address,
     broken_relations,
@@ -256,7 +257,8 @@ class Batch:
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_warmup", widen(self.warmup_source, instructions(), BESIDE), n * (STEPS + duty.m))
+        work, beside = n * (STEPS + duty.m), BESIDE if n > FEW else FEW
+        run = driver("batch_warmup", widen(self.warmup_source, instructions(), beside), work)
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]

@@ -42,6 +42,8 @@ _SIGNATURES = {
 WIDER = {"avx512f": 8, "avx2": 4}
 #: Rows of a batch side by side with any of them: two vectors at once do not wait for each other.
 BESIDE = 8
+#: So few rows leave most of those lanes empty: side by side in a vector of two they take half the time.
+FEW = 2
 #: Functions by name, source and how much they may be optimised, and what each source has had to do.
 _LOADED: dict[tuple[str, str, tuple[str, ...]], Any] = {}
 _WORK: Counter[str] = Counter()
@@ -84,7 +86,7 @@ def widen(source: str, instructions: str, beside: int = 0) -> str:
     Args:
         source: the C text
         instructions: a key of `WIDER`, or nothing
-        beside: rows side by side, 4 or 8; as many as a vector has numbers when not given
+        beside: rows side by side, 2, 4 or 8; as many as a vector has numbers when not given
     """
     if not instructions:
         return source

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import minimize_scalar
 from scipy.signal import lfilter
 
 from ...model.errors import DataError
@@ -32,6 +32,10 @@ HOURS = (1.0, 3.0, 6.0, 12.0, 24.0)
 LAGS = (0, 1, 2, 4, 8, 16, 32, 64, 128)
 #: Samples in which the filter settles before a prediction.
 BEFORE = 100
+#: Logits of the decay of a node from sample to sample: time constants of half a sample to 160 000.
+LOGITS = (-2.0, 12.0)
+#: Stretches that the rig runs through at a time, few as each is copied.
+SIDE = 16
 
 
 @dataclass(frozen=True)
@@ -177,17 +181,23 @@ class Rivals:
 
     def _node(self, data: Windows, j: int) -> np.ndarray:
         """Decay [logit] and gains of a first-order model of sensor j, by least squares of its free run."""
+        pieces = [
+            (np.column_stack([u[:n] / self.scale, np.ones(n)]), y[:n, j])
+            for u, y, n in zip(data.given, data.read, _lengths(data), strict=True)
+        ]
 
-        def left(x: np.ndarray) -> np.ndarray:
-            errors = [
-                (y[:n, j] - self.one_node(x, u[:n], y[0, j]))[::3]
-                for u, y, n in zip(data.given, data.read, _lengths(data), strict=True)
-            ]
-            return np.asarray(np.nan_to_num(np.concatenate(errors)))
+        def fit(logit: float) -> tuple[np.ndarray, float]:
+            """The best gains for a decay, and the sum of squares that they leave."""
+            decay, A = 1 / (1 + np.exp(-logit)), np.zeros((len(self.scale) + 2, len(self.scale) + 2))
+            for u, y in pieces:
+                left = y[::3] - y[0] * decay ** np.arange(1, len(y) + 1, 3)
+                terms = np.column_stack([lfilter([1.0], [1.0, -decay], u, axis=0)[::3], left])[np.isfinite(left)]
+                A += terms.T @ terms
+            gains = np.linalg.lstsq(A[:-1, :-1], A[:-1, -1])[0]
+            return gains, A[-1, -1] - gains @ A[:-1, -1]
 
-        start = np.array([3.5, *np.zeros(data.given.shape[2]), 0.0])
-        start[-1] = 0.03 * np.nanmean(data.read[:, :, j])
-        return np.asarray(least_squares(left, start, x_scale="jac", max_nfev=60).x)
+        best = minimize_scalar(lambda logit: fit(logit)[1], bounds=LOGITS, method="bounded").x
+        return np.array([best, *fit(best)[0]])
 
     def one_node(self, x: np.ndarray, u: np.ndarray, start: float) -> np.ndarray:
         """Free run (n,) from a start."""
@@ -214,10 +224,9 @@ def _lagged(u: np.ndarray) -> np.ndarray:
 
 def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
     """Errors of the rig and of rivals, fitted elsewhere, on one log."""
-    whole = windows([log], own.given, own.read, 0)
+    ahead, whole = _ahead(own, log, rivals), windows([log], own.given, own.read, 0)
     lengths = _lengths(whole)
-    passed = own.run(whole, np.zeros((len(lengths), len(own.knobs))), free=True, slopes=False)
-    shown, predicted = passed.shown, np.empty_like(whole.read)
+    shown, predicted = _run_freely(own, whole), np.empty_like(whole.read)
     free = {"rig": _rms(own.read, whole.read - shown)}
     for i, n in enumerate(lengths):
         for j in range(len(own.read)):
@@ -229,7 +238,16 @@ def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
     longest = int(lengths.argmax())
     n = lengths[longest]
     pictured = {s: np.array([shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
-    return Replayed(log.name, log.n, free, _ahead(own, log, rivals), pictured, log.time[whole.rows[longest, :n]])
+    return Replayed(log.name, log.n, free, ahead, pictured, log.time[whole.rows[longest, :n]])
+
+
+def _run_freely(own: Filter, data: Windows) -> np.ndarray:
+    """What the rig shows (N, L, reads)."""
+    shown, order = np.empty_like(data.read), np.argsort(-_lengths(data), kind="stable")
+    for some in np.array_split(order, -(-len(order) // SIDE)):
+        z = np.zeros((len(some), len(own.knobs)))
+        shown[some] = own.run(data.some(some), z, free=True, slopes=False).shown
+    return shown
 
 
 def _rms(names: Sequence[str], error: np.ndarray) -> dict[str, float]:
@@ -242,7 +260,7 @@ def _ahead(own: Filter, log: Log, rivals: Rivals) -> dict[str, dict[str, tuple[f
     data = windows([log], own.given, own.read, steps[-1], BEFORE)
     data = data.some(data.counts.sum(axis=1) >= steps[-1])
     begin = data.counts.argmax(axis=1)
-    passed = own.run(data, np.zeros((len(begin), len(own.knobs))), free=True, slopes=False)
+    shown = _run_freely(own, data)
     found: dict[str, dict[str, tuple[float, ...]]] = {
         m: {} for m in ("rig", "one node", "regression with lags", "last reading")
     }
@@ -253,7 +271,7 @@ def _ahead(own: Filter, log: Log, rivals: Rivals) -> dict[str, dict[str, tuple[f
         for i, b in enumerate(begin):
             y, last, u = data.read[i, :, j], data.read[i, b - 1, j], data.given[i]
             predicted = {
-                "rig": passed.shown[i, at[i], j],
+                "rig": shown[i, at[i], j],
                 "one node": rivals.one_node(rivals.node[j], u[b:], last)[at[i] - b],
                 "regression with lags": regressed[i, :, j],
                 "last reading": np.full(len(steps), last),

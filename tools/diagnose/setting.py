@@ -95,10 +95,10 @@ def setting(
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
-    forms = [f.form for f in formulas]
+    added = [(one.parts, one.connections) for one in (*(f.form for f in formulas), *known)]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
-    plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown, tried)
+    plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
     return Setting(scenario, spec, card, causes, formulas, plant, problem, oils)

@@ -8,8 +8,9 @@ import numpy as np
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.tools.diagnose.answer import gain
+from gearheat.tools.diagnose.answer.channels import levels
 from gearheat.tools.diagnose.answer.experiments import planned_campaign
-from gearheat.tools.diagnose.answer.gain import levels, schemes
+from gearheat.tools.diagnose.answer.gain import schemes
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.setting import Setting
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gearheat.tools.diagnose.infer import scales
 from gearheat.tools.diagnose.infer.problem import Noise
-from gearheat.tools.diagnose.model.noise import Term
+from gearheat.tools.diagnose.model.entries import Term
 
 
 def test_few_columns_weigh_scales_as_the_whole_covariance(monkeypatch) -> None:

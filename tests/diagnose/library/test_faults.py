@@ -13,8 +13,8 @@ from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios.load import list_rigs
 from gearheat.tools.diagnose.library.cause import Row, as_array
 from gearheat.tools.diagnose.library.check import parameters, problems
+from gearheat.tools.diagnose.library.entries import TABLE
 from gearheat.tools.diagnose.library.registry import library
-from gearheat.tools.diagnose.report.phrases import NAMES
 from one_part import EXAMPLES
 
 #: Parts that carry a cause by a parameter of their own.
@@ -26,7 +26,7 @@ def test_a_part_type_says_by_what_it_may_fail(kind):
     cls = PARTS[kind]
     assert cls.faults is not None or cls.role in FAULTS, "declare `faults`, SOUND where nothing can fail"
     for cause, keys in faults_of(cls).items():
-        assert cause in NAMES
+        assert TABLE[cause]["name"]
         assert set(keys) <= set(list_declared(cls, Parameter))
 
 

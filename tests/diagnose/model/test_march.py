@@ -18,9 +18,9 @@ from gearheat.scenarios.measured.table import Campaign
 from gearheat.scenarios.nuisances import Nuisance
 from gearheat.tools.diagnose.library.cause import Cause, Form, Shape, Size
 from gearheat.tools.diagnose.model import duty
-from gearheat.tools.diagnose.model.duty import STEADY
+from gearheat.tools.diagnose.model.duty import STEADY, Phases
 from gearheat.tools.diagnose.model.formula import Formula
-from gearheat.tools.diagnose.model.march import Phases, march
+from gearheat.tools.diagnose.model.march import march
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.model.plant import Plant
 
@@ -61,7 +61,11 @@ def planetary() -> tuple[Plant, Campaign, list[Formula]]:
     knobs = dict.fromkeys(["gear_set.k_mu", "oil.c_p", *(p for f in known for p in f.paths)])
     given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
     tried = tuple(dict.fromkeys(path for f in known for path in f.sized))
-    return Plant.of(scenario.spec, [f.form for f in known], tuple(knobs), given, shown, tried), data, known
+    return (
+        Plant.of(scenario.spec, [(f.form.parts, f.form.connections) for f in known], tuple(knobs), given, shown, tried),
+        data,
+        known,
+    )
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Sensors in the units of a result."""
+"""Sensors in the units of a result, and the levels at which they stood."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ ENDINGS = {
     "%": ("_pct", "_pct"),
     "A": ("_A", "_A"),
 }
+
+#: Levels further apart than this share of their range are different ones.
+GAP = 0.06
 
 
 def unit(sensor: Sensor) -> str:
@@ -71,3 +74,10 @@ def channel(sensor: Sensor) -> Channel:
         repeat_sd=difference(sensor, sensor.repeat_sd),
         offset_sd=difference(sensor, sensor.offset_sd),
     )
+
+
+def levels(values: np.ndarray) -> list[np.ndarray]:
+    """Rows (k,) of each level, lowest first: values with no gap between them."""
+    order = np.argsort(values, kind="stable")
+    gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
+    return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]

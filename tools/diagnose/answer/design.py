@@ -21,8 +21,6 @@ from . import findings
 from .experiments import Check, Experiment, build_tests
 
 Pair = tuple[str, str]
-#: Distances below this are none [standard deviations].
-APART = 3.0
 #: A distance beyond this tells two causes apart as well as any.
 ENOUGH = 6.0
 #: What an experiment has to add to a distance [standard deviations].
@@ -92,7 +90,7 @@ def find_alike(effects: Effects, cause: str, size: float, like: Mapping[str, str
         return None
     distances = effects.distances(cause, size)
     declared = {o for o in distances if like[cause] and like[o].partition(":")[0] == like[cause].partition(":")[0]}
-    near = sorted((o for o in distances if distances[o] < APART or o in declared), key=lambda o: distances[o])
+    near = sorted((o for o in distances if distances[o] < findings.APART or o in declared), key=lambda o: distances[o])
     if not near:
         return None
     reason = like[cause].partition(":")[2].strip() if declared & set(near) else ""

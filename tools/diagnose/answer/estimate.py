@@ -15,7 +15,7 @@ from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
 from ..infer.problem import Acting, Problem
 from ..infer.screen import limits
-from ..library.cause import Cause, Form, Shape, Size
+from ..library.cause import Form, Shape, Size
 from ..model.observe import Observed
 from . import channels, findings
 from .decide import Member
@@ -50,6 +50,12 @@ def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     return x, covariance
 
 
+def loose_variance(fit: Fit) -> np.ndarray:
+    """Variances (M,) by the scatter of readings, inputs and days as found, without tolerances."""
+    loose = zip(fit.noise.scales, fit.noise.loose, strict=True)
+    return np.asarray(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))
+
+
 def places(problem: Problem, h: Hypothesis) -> list[int]:
     """Where the sizes of its causes stand in its vector."""
     lengths = [a.formula.size for a in h.fit.look.acting]
@@ -62,28 +68,32 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
     if not acting:
         return _spread(found, cause, members)
-    means, variances, weights = [], [], []
-    for h, p in acting:
+    pairs = []
+    for h, _ in acting:
         place = places(found.problem, h)[h.fit.causes.index(cause)]
         x, covariance = posterior(found.problem, h)
-        means.append(x[place])
-        variances.append(covariance[place, place])
-        weights.append(p)
-    w, m = np.array(weights) / sum(weights), np.array(means)
+        pairs.append((x[place], covariance[place, place]))
+    weights = [p for _, p in acting]
+    w, (m, variances) = np.array(weights) / sum(weights), np.transpose(pairs)
     centre = float(w @ m)
-    spread = float(np.sqrt(w @ (np.array(variances) + (m - centre) ** 2)))
+    spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
     best = max(acting, key=lambda member: member[1])[0]
     one = best.fit.look.acting[best.fit.causes.index(cause)]
-    size = _size(one.formula.cause, centre, spread)
+    s = one.formula.cause.size
+    size = _told(s, [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)])
     return (size, *_shapes(found.problem, best, one))
 
 
-def _size(cause: Cause, centre: float, spread: float) -> Estimate:
-    """A size by its mean and standard deviation, in half widths of its prior."""
-    s = cause.size
-    ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
-    bound, (unit, (low, value, high)) = at_bound(ends[1], s.low, s.high), convert(s, ends)
-    return Estimate(name=s.name, value=value, ci95=(low, high), unit=unit, doc=s.doc, at_bound=bound)
+def _told(of: Shape | Size, ends: Sequence[float]) -> Estimate:
+    """A size or a shape with its interval.
+
+    Args:
+        of: what it is
+        ends: of the interval, and the value between them
+    """
+    unit, (low, value, high) = convert(of, ends)
+    bound = at_bound(ends[1], of.low, of.high)
+    return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)
 
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
@@ -98,11 +108,7 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
             t = one.t.copy()
             t[k] = np.clip(x[begin + k] + step, -3.0, 3.0)
             values.append(one.formula.theta(t)[shape.name])
-        low, value, high = values
-        unit, (low, value, high) = convert(shape, [low, value, high])
-        bound = at_bound(values[1], shape.low, shape.high)
-        told = Estimate(name=shape.name, value=value, ci95=(low, high), unit=unit, doc=shape.doc, at_bound=bound)
-        found.append(told)
+        found.append(_told(shape, values))
     return found
 
 
@@ -130,16 +136,13 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     white, e = h.fit.linear(found.problem)
     V, r, one = white.L @ white.L.T, white.L @ e, extra.columns @ extra.columns.T
     V = V - extra.size**2 * one
-    logs = []
-    for size in SPREADS:
-        beside = White.of(V + size**2 * one)
-        logs.append(beside.log_density(beside(r)))
+    whites = [White.of(V + size**2 * one) for size in SPREADS]
+    logs = [white.log_density(white(r)) for white in whites]
     share = np.cumsum(np.exp(np.array(logs) - np.logaddexp.reduce(logs)))
-    low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
-    size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    unit, (low, value, high) = convert(size_of, [size_of.sd * v for v in (low, value, high)])
-    doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
-    return (Estimate(name=size_of.name, value=value, ci95=(low, high), unit=unit, doc=doc),)
+    of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
+    told = _told(of, [of.sd * float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)])
+    doc = of.doc if "standard deviation" in of.doc else f"standard deviation of: {of.doc}"
+    return (told.model_copy(update={"doc": doc, "at_bound": ""}),)
 
 
 def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:

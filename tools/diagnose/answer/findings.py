@@ -15,6 +15,8 @@ from .numbers import Interval, Model, Number, P, Probability
 
 #: The name of whatever the library lacks.
 UNEXPLAINED = "model.unexplained"
+#: Distances of causes below this are none [standard deviations].
+APART = 3.0
 Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
 
 

@@ -18,14 +18,13 @@ from ..infer.found import Found
 from ..infer.weigh import Options
 from ..model.observe import Observed
 from . import channels
+from .estimate import loose_variance
 from .findings import Gain
 
 #: Draws of the bootstrap.
 DRAWS = 2000
 #: Causes that may act together in a fold.
 MOST = 8
-#: Levels further apart than this share of their range are different ones.
-GAP = 0.06
 #: Rows of a small campaign, of which tests are left out only.
 SMALL = 48
 #: Folds of its one scheme.
@@ -116,9 +115,8 @@ def _gain(
 
 def noise_floor(found: Found, sensor: int) -> float:
     """Standard deviation of one reading: its own scatter, that of the inputs and of the day, as found."""
-    o, noise = found.problem.data, found.hypotheses[0].fit.noise
-    loose = sum(np.exp(2 * s) * np.diag(t.matrix) for t, s in zip(noise.loose, noise.scales, strict=True))
-    return float(np.sqrt(np.mean(np.asarray(loose)[found.problem.own][o.kind == sensor])))
+    mine = found.problem.data.kind == sensor
+    return float(np.sqrt(np.mean(loose_variance(found.hypotheses[0].fit)[found.problem.own][mine])))
 
 
 def rms(values: np.ndarray) -> float:
@@ -149,7 +147,7 @@ def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
     for scheme, kind in () if small else (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
         given = [s for s in c.given if s.kind == kind]
         if given:
-            found[scheme] = levels(np.abs(c.values[given[0].name]))
+            found[scheme] = channels.levels(np.abs(c.values[given[0].name]))
     oils = np.array(c.oil)[c.test]
     if not small:
         found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
@@ -158,13 +156,6 @@ def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
         for name, folds in found.items()
         if len(folds) > 1 and all(c.n - len(rows) >= LEAST for rows in folds)
     }
-
-
-def levels(values: np.ndarray) -> list[np.ndarray]:
-    """Rows (k,) of each level, lowest first: values with no gap between them."""
-    order = np.argsort(values, kind="stable")
-    gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
-    return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]
 
 
 def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray | None:

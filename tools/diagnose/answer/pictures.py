@@ -13,6 +13,7 @@ from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found, Hypothesis
 from ..infer.screen import limits
 from . import channels
+from .estimate import loose_variance
 from .evidence import Picture, Rows, View
 from .numbers import array
 
@@ -27,9 +28,7 @@ def rows(found: Found, h: Hypothesis) -> Rows:
     o, own = found.problem.data, found.problem.own
     c = o.campaign
     null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
-    noise = h.fit.noise
-    loose = zip(noise.scales, noise.loose, strict=True)  # scatter of readings and days, without tolerances
-    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))[own]
+    spread = np.sqrt(loose_variance(h.fit))[own]
     told = {}
     for i, s in enumerate(o.read):
         mine = o.kind == i

@@ -9,8 +9,8 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ..library.cause import Cause
-from .design import APART, WORTH, Design, Effects, Pair, gain
-from .findings import Isolability
+from .design import WORTH, Design, Effects, Pair, gain
+from .findings import APART, Isolability
 from .numbers import Model, Number
 
 #: Experiments that are done together, at most.

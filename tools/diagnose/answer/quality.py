@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
+from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +23,6 @@ from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
 from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, ResidualMean, VarianceComponent
-from .gain import levels
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.0
@@ -48,16 +50,13 @@ def check_data(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
 def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     """All readings that were set aside, by what a hypothesis says of them."""
     problem, told = found.problem, []
-    rows = np.cumsum([0, *(o.campaign.n for o in problem.campaigns)])
-    entries = np.cumsum([0, *(o.m for o in problem.campaigns)])
     for aside, size_sd in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
-        number, name, expected = aside.number, aside.sensor, None
-        begins = rows if name else entries
-        k = int(np.searchsorted(begins, number, side="right")) - 1
-        o, row = problem.campaigns[k], int(number - begins[k])
-        if not name:
-            name, row = o.read[o.kind[row]].name, int(o.row[row])
-            expected = float(channels.in_unit(o.campaign.sensor(name), h.fit.look.shown[number]))
+        k, name = problem.source(aside)
+        o, expected = problem.campaigns[k], None
+        row = aside.number - sum(c.campaign.n if aside.sensor else c.m for c in problem.campaigns[:k])
+        if not aside.sensor:
+            row = int(o.row[row])
+            expected = float(channels.in_unit(o.campaign.sensor(name), h.fit.look.shown[aside.number]))
         campaign, s = o.campaign, o.campaign.sensor(name)
         line = int(campaign.lines[row])
         told.append(
@@ -107,16 +106,13 @@ def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceO
         factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
         values = [path for path in factors if path in plant.place]
         factor = factors[values[0]] if values else None
-        if len(values) != 1 or factor is None:
-            told.append(NuisanceOff(name=nuisance.name, z=z, factor=factor, paths=tuple(factors)))
-            continue
-        place = plant.place[values[0]]
-        file, unit = float(plant.p[place]), plant.flat.parameters[place].unit
-        told.append(
-            NuisanceOff(
-                name=nuisance.name, z=z, factor=factor, file=file, found=file * factor, unit=unit, paths=tuple(values)
-            )
-        )
+        known: dict[str, Any] = {"paths": tuple(factors)}
+        if len(values) == 1:
+            place = plant.place[values[0]]
+            file = float(plant.p[place])
+            known = {"paths": tuple(values), "file": file, "found": file * factors[values[0]]}
+            known["unit"] = plant.flat.parameters[place].unit
+        told.append(NuisanceOff(name=nuisance.name, z=z, factor=factor, **known))
     return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 
@@ -249,15 +245,11 @@ def group_rows(campaign: Campaign) -> dict[str, dict[str, np.ndarray]]:
 def _along(campaign: Campaign, sensor: Sensor) -> dict[str, np.ndarray]:
     """Rows by the levels of a given sensor, neighbours joined where there are many."""
     values = np.abs(campaign.values[sensor.name])
-    each = levels(values)
-    joined = [np.concatenate(part) for part in _split(each, MOST)]
+    each = channels.levels(values)
+    parts = np.array_split(np.arange(len(each)), min(MOST, len(each)))
+    joined = [np.concatenate([each[k] for k in part]) for part in parts]
     unit = channels.unit(sensor)
     return {f"{channels.difference(sensor, float(values[rows].mean())):.4g} {unit}": rows for rows in joined}
-
-
-def _split(groups: Sequence[np.ndarray], most: int) -> Iterator[Sequence[np.ndarray]]:
-    for part in np.array_split(np.arange(len(groups)), min(most, len(groups))):
-        yield [groups[k] for k in part]
 
 
 def _cells(
@@ -266,9 +258,5 @@ def _cells(
     """Groups of one quantity, or of two against each other, with their rows; none where one does not vary."""
     if any(name not in groups for name in names):
         return
-    first, *second = (groups[name] for name in names)
-    for a, rows in first.items():
-        if not second:
-            yield (a,), rows
-        for b, others in second[0].items() if second else ():
-            yield (a, b), np.intersect1d(rows, others)
+    for cell in product(*(groups[name].items() for name in names)):
+        yield tuple(group for group, _ in cell), reduce(np.intersect1d, (rows for _, rows in cell))

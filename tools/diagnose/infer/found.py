@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..model.entries import Term
 from ..model.formula import Formula
-from ..model.noise import Term
 from . import screen
 from .fit import Fit
 from .prior import Prior

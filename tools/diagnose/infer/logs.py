@@ -13,9 +13,9 @@ from ....scenarios.measured.logs import Log
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
+from ..model.entries import Term
 from ..model.logged import Logged
 from ..model.logs import Filter, Passed
-from ..model.noise import Term
 from ..model.plant import Plant
 from ..model.windows import Windows, windows
 from .levels import Levels, Quadratics, estimate, first_levels

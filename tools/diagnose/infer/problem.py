@@ -11,8 +11,9 @@ from typing import Self
 import numpy as np
 
 from ....model.errors import SolveError
+from ..model.entries import Term, summed
 from ..model.formula import Formula
-from ..model.noise import Term, alike, input_scatter, stacked, summed, terms
+from ..model.noise import alike, input_scatter, stacked, terms
 from ..model.observe import Observed, Seen
 from .scales import most_likely
 

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..model.noise import Term
+from ..model.entries import Term
 from .evidence import White
 
 #: Bounds of the logarithms of scales.

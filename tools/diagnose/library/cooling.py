@@ -9,10 +9,10 @@ import casadi as ca
 
 from ....model.laws.smooth import smooth_abs
 from ....model.parts.free_form import step
-from .cause import Cause, Form, Num, Row, Theta, Values
+from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, beside_own_law, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, linear, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -67,12 +67,7 @@ def emissivity(at: Context) -> Iterator[Cause]:
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in paths)
     low, high = min(SHINY / brightest - 1, -BRIGHTER), max(1 / brightest - 1, BRIGHTER)
     size = replace(entry("cooling.emissivity", at).cause.size, low=low, high=high)
-    yield from scaled(at, "cooling.emissivity", paths, _linear, size=size)
-
-
-def _linear(size: Num) -> Num:
-    """A factor that may fall to nothing."""
-    return 1 + size
+    yield from scaled(at, "cooling.emissivity", paths, linear, size=size)
 
 
 def contact(at: Context) -> Cause:

@@ -80,12 +80,14 @@ class Regime:
 
     Args:
         quantity, above: what is limited, and to which side
-        sensor: that shows the temperature of the room
+        sensor: that shows it, where no part of the machine knows
+        span: its range, where it is not that of its quantity in the data
     """
 
     quantity: str
     above: bool
     sensor: str = ""
+    span: tuple[float, float] | None = None
 
     WORDS = {"w": "speed", "tau": "load", "T": "temperature", "film": "film", "room": "room temperature"}
 
@@ -110,24 +112,24 @@ class Regime:
     def bounds(self, ranges: Ranges) -> tuple[float, float]:
         """Range of its quantity in the data."""
         name = self.sensor or self.quantity
-        return ranges.low[name], ranges.high[name]
+        return self.span or (ranges.low[name], ranges.high[name])
 
     def share(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
         """How much of the size acts in a row, by what no part of the machine knows."""
         if self.quantity == "order":
             return since(theta, row)
-        return self._beyond(row.sensors[self.sensor], theta, ranges) if self.quantity == "room" else 1.0
+        return self.beyond(row.sensors[self.sensor], theta, ranges) if self.quantity == "room" else 1.0
 
     def gate(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
         """How much of the size acts in a row; the oil's temperature is told from its rise over a usual room."""
         if self.quantity == "T":
-            return self._beyond(ranges.mid["T"] + row.rise - ranges.rise, theta, ranges)
+            return self.beyond(ranges.mid["T"] + row.rise - ranges.rise, theta, ranges)
         if self.quantity == "direction":
             return (1 + (row.direction if self.above else -row.direction)) / 2
         return self.share(theta, row, ranges)
 
-    def _beyond(self, value: Num, theta: Theta, ranges: Ranges) -> Num:
-        """Whether a value lies on its side of the threshold."""
+    def beyond(self, value: Num, theta: Theta, ranges: Ranges) -> Num:
+        """Whether a value lies on its side of the threshold, 0 to 1."""
         low, high = self.bounds(ranges)
         side = 1.0 if self.above else -1.0
         return step(side * (value - theta["threshold"]) / (USUAL * (high - low) * theta["width"]))

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from ....model.machines.roles import Roles
 from ....model.parts.grey import GreyLoss
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Row, Size, Theta, Values
+from .entries import TABLE
 from .forms import FROM_THEN, PLACE, Course, since
+from .sensors import KINDS, NAMES
 
 #: Bounds of a move, as multiples of what is usual.
 FARTHEST = 10.0
@@ -53,24 +56,8 @@ class Knob:
         return (*self.scaled, *self.shifted)
 
 
-#: Cause of a sensor's error by the sensor's kind, and in words.
-OFFSETS = {
-    "oil_temp": ("sensor.oil_temp.offset", "The oil probe reads too high or too low."),
-    "wall_temp": ("sensor.wall_temp.offset", "The probe on a body reads too high or too low."),
-    "ambient": ("sensor.ambient.bias", "The room probe reads too high or too low."),
-}
-GAINS = {
-    "torque": ("sensor.torque.gain", "The torque reading is wrong by a share of itself.", 0.03, 0.02),
-    "speed": ("sensor.speed.gain", "The speed reading is wrong by a share of itself.", 0.02, 0.003),
-    "power": ("sensor.power.gain", "The power reading is wrong by a share of itself.", 0.03, 0.02),
-}
-#: Causes that parts declare with parameters of their own, and in words.
-FLOWS = {
-    "cooling.fan": "A fan moves less or more air.",
-    "cooling.oil_flow": "Less or more oil circulates: a pump, a filter or a nozzle.",
-}
-
-
+#: What the gain of an instrument is off by as a rule, and its standard deviation between machines.
+GAINS = {"torque": (0.03, 0.02), "speed": (0.02, 0.003), "power": (0.03, 0.02)}
 #: How a knob moves over the logs.
 WHENS = (
     Course("", 0.5, (), lambda theta, row: 1.0),
@@ -115,10 +102,15 @@ def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
         roles: of the machine
         sensors: of the log
     """
-    return (*_losses(roles), *_cooling(roles), *_bodies(roles), *_sensors(sensors))
+    rows = TABLE["knobs"]["rows"]
+    return (*_teeth(roles), *(knob for row in rows for knob in _parts(roles, **row)), *_sensors(sensors))
 
 
-def _losses(roles: Roles) -> Iterator[Knob]:
+def _factor(name: str, cause: str, doc: str, *paths: str) -> Knob:
+    return Knob(name, cause, doc, scaled=dict.fromkeys(paths, 1.0))
+
+
+def _teeth(roles: Roles) -> Iterator[Knob]:
     types = roles.spec.types
     for name in roles.having("teeth"):
         if issubclass(types[roles.spec.part(name).type], GreyLoss):
@@ -128,56 +120,38 @@ def _losses(roles: Roles) -> Iterator[Knob]:
             yield _factor(f"{name}: loss of load", "losses.mesh_friction", "More or less loss with load.", f"{name}.b")
         else:
             yield _factor(f"{name}: friction", "losses.mesh_friction", "More or less friction.", *roles.scaled(name))
-    kinds = {"bearing": "losses.bearing_preload", "seal": "losses.seal_drag", "churning": "losses.churning"}
-    for role, cause in kinds.items():
-        for name in roles.having(role):
-            yield _factor(f"{name}: loss", cause, f"A {role} that loses more or less.", *roles.scaled(name))
 
 
-def _factor(name: str, cause: str, doc: str, *paths: str, usual: float = 0.3, sd: float = 0.3) -> Knob:
-    return Knob(name, cause, doc, usual=usual, sd=sd, scaled=dict.fromkeys(paths, 1.0))
+def _parts(
+    roles: Roles, *, what: str, cause: str, role: str = "", group: str = "", shifted: Sequence[str] = (), **said: Any
+) -> Iterator[Knob]:
+    """Knobs of all parts of a role, of a group but for jets, or of those that declare a cause of their own.
 
-
-def _cooling(roles: Roles) -> Iterator[Knob]:
-    for name in roles.having("cooler"):
-        doc = "The cooler takes less heat: dirt on its air side or its oil side, a weak fan."
-        yield _factor(f"{name}: conductance", "cooling.cooler", doc, *roles.scaled(name), sd=0.2)
-    for name in roles.having("switch"):
-        paths = {f"{name}.T_open": 1.0, f"{name}.T_close": 1.0}
-        doc = "The thermostat opens at another temperature."
-        yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
-    for cause, doc in FLOWS.items():
-        for name, paths in roles.failing(cause).items():
-            yield Knob(f"{name}: flow", cause, doc, usual=0.5, sd=0.2, scaled=paths)
-    jets = roles.having("jet")
-    for name in jets:
-        yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))
-    families = {
-        "cooling.air": (roles.surfaces, "The air takes more or less heat."),
-        "cooling.foundation": (roles.foundation, "More or less heat flows to what the machine stands in."),
-        "cooling.oil_wall": (roles.oil_side, "Another heat transfer or flow between the oil and what it meets."),
-        "cooling.contact": (roles.contacts, "Another conductance between bodies."),
-    }
-    for cause, (names, doc) in families.items():
-        for name in (n for n in names if n not in jets):
-            yield _factor(f"{name}: conductance", cause, doc, *roles.scaled(name), usual=0.4)
-
-
-def _bodies(roles: Roles) -> Iterator[Knob]:
-    for name in roles.having("bath"):
-        yield _factor(
-            f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25
-        )
-    for name in roles.having("body"):
-        doc = "A heat capacity that is not the model's."
-        yield _factor(f"{name}: heat capacity", "thermal.mass", doc, *roles.scaled(name))
+    Args:
+        roles: of the machine
+        what: differs, in words
+        cause: that it is where it has moved
+        role, group: whose parts
+        shifted: parameters that are shifted; without, a factor
+        said: what else the table says
+    """
+    if role or group:
+        names = roles.having(role) if role else [n for n in getattr(roles, group) if n not in roles.having("jet")]
+        found = {name: dict.fromkeys(roles.scaled(name), 1.0) for name in names}
+    else:
+        found = roles.failing(cause)
+    for name, paths in found.items():
+        moved = {f"{name}.{key}": 1.0 for key in shifted}
+        yield Knob(f"{name}: {what}", cause, scaled={} if moved else paths, shifted=moved, **said)
 
 
 def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
     for s in sensors:
-        if s.kind in OFFSETS:
-            cause, doc = OFFSETS[s.kind]
-            yield Knob(f"{s.name}: offset", cause, doc, "K", 2.0, 0.7, sensor=s.name)
+        kind = KINDS.get(s.kind)
+        if kind and kind.unit == "K":
+            id = f"sensor.{s.kind}.offset"
+            doc = f"The {kind.words} reads too high or too low."
+            yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, sensor=s.name)
         elif s.kind in GAINS and s.role == "given":
-            cause, doc, usual, sd = GAINS[s.kind]
-            yield Knob(f"{s.name}: gain", cause, doc, "1", usual, sd, sensor=s.name, gain=True)
+            doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
+            yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)

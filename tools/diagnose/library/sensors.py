@@ -11,16 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
-from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
+from .entries import TABLE, entry
+from .forms import COURSES, FROM_THEN, LEAST_SPAN, PLACE, Context, Course, Regime, since
 from .probes import heated, lag, one_of, position, swapped, wrong
 
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025
-#: A probe's reading that varies by less has no sides [K].
-LEAST_SPAN = 5.0
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
 
@@ -51,18 +49,7 @@ class Kind:
     calibrate: str
 
 
-BATH = "all probes in one bath at two temperatures; readings at rest in a room of constant temperature"
-TARE = "a tare with the shafts uncoupled; a calibration with a lever arm; points at small load"
-REPEAT = "the first point repeated at the end; a check of the zero before each test"
-KINDS: Mapping[str, Kind] = {
-    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
-    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
-    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, 1.0, BATH),
-    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.1, 0.01, 0.2, 1e-9, TARE),
-    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, 1e-9, "a stroboscope"),
-    "current": Kind("current reading", "A", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a clamp meter; its zero at rest"),
-    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a second power meter"),
-}
+KINDS: Mapping[str, Kind] = {name: Kind(**said) for name, said in TABLE["kinds"].items()}
 #: Stable identifiers that are not named as the others.
 NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": "sensor.torque.step"}
 
@@ -155,70 +142,53 @@ class _Instruments:
         weight, regime = mode.weight / len(self.own), mode.regime or {}
         return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
 
-    def cause(
-        self,
-        key: str,
-        doc: str,
-        size: Size,
-        modes: Sequence[Mode],
-        exposes: str,
-        acts_on: str = "",
-    ) -> Cause:
-        """A cause of this kind: `key` ends its identifier, `modes` are its forms, the others those of `Cause`.
+    def cause(self, key: str, modes: Sequence[Mode], size: Size | None = None, acts_on: str = "") -> Cause:
+        """A cause of this kind.
 
-        One that is no constant error is met half as often.
+        Args:
+            key: end of its identifier, and of its name in the table
+            modes: its forms
+            size, acts_on: where they are not those of the table
         """
-        common = 1.0 if key in CONSTANT else 0.5
-        known = f"sensor.{self.name}.{key}"
-        forms = self.forms(modes, size.name)
-        return Cause(NAMES.get(known, known), doc, size, forms, exposes, acts_on=acts_on, common=common)
+        said, id = TABLE[f"sensor.*.{key}"], f"sensor.{self.name}.{key}"
+        size = size or self.size(**said["size"])
+        return Cause(
+            NAMES.get(id, id),
+            said["doc"].format(self.kind.words),
+            size,
+            self.forms(modes, size.name),
+            said.get("exposes", self.kind.calibrate),
+            acts_on=acts_on or said.get("acts_on", ""),
+            common=said.get("common", 1.0),
+        )
 
     def causes(self) -> Iterator[Cause]:
         """All of them."""
-        words, known = self.kind.words, self.at.ranges.known
-        sides = [*one_side(self.at), *(warm_or_cold(self.at, self.own) if self.kind.unit == "K" else [])]
-        general = Mode("", 1 - ONE_SIDE * len(sides), _one)
-        doc = f"Offset: the {words} reads too high or too low."
-        yield self.cause("offset", doc, self.size("reading less truth"), [general, *sides], self.kind.calibrate)
+        known, both_ways = self.at.ranges.known, self.at.both_ways
+        sides = sided(self.at, self.own if self.kind.unit == "K" else ())
+        yield self.cause("offset", [Mode("", 1 - ONE_SIDE * len(sides), _one), *sides])
         yield self.gain()
-        if self.at.both_ways:
-            doc = f"The {words} errs with the direction of the power flow."
-            yield self.cause("by_direction", doc, self.size("reading less truth"), DIRECTIONS, HALVES)
+        if both_ways:
+            yield self.cause("by_direction", DIRECTIONS)
         if "order" in known:
-            yield from self.over_time()
+            yield self.cause("drift", DRIFTS)
+            modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if both_ways)]
+            total = sum(m.weight for m in modes)
+            yield self.cause("since", [replace(m, weight=m.weight / total) for m in modes])
+            yield self.cause("random_walk", [Mode("", 1.0, _one, spread="walk", turns=True)])
+            if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in known]:
+                yield self.frozen(hanging)
         if "mounting" in known:
-            doc, size = f"The {words} errs anew with each mounting or filling.", "standard deviation of the errors"
-            mode = Mode("", 1.0, _one, spread="mounting", turns=True)
-            yield self.cause("mounting", doc, self.size(size, signed=False), [mode], MOUNTINGS, "order")
+            yield self.cause("mounting", [Mode("", 1.0, _one, spread="mounting", turns=True)])
 
     def gain(self) -> Cause:
         """In proportion to the reading; a thermometer's from a fixed point."""
-        words, most = self.kind.words, self.kind.gain_most
-        mode = Mode("", 1.0, lambda theta, row, value: value)
+        most, mode = self.kind.gain_most, Mode("", 1.0, lambda theta, row, value: value)
         if self.kind.unit == "K":
             fixed = Shape("fixed", "K", "temperature at which it reads right", 273.15, 303.15)
             mode = Mode("", 1.0, lambda theta, row, value: value - theta["fixed"], (fixed,))
         size = Size("gain", "1", "relative error of the reading", self.kind.gain, -most, most)
-        return self.cause("gain", f"Gain of the {words}.", size, [mode], self.kind.calibrate, self.own[0].name)
-
-    def over_time(self) -> Iterator[Cause]:
-        """What changes with the running order."""
-        words = self.kind.words
-        size = self.size("error at the last test less that at the first", 1.3)
-        yield self.cause(
-            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, DRIFTS, REPEAT, "order"
-        )
-        size = self.size("error after the change less that before", 1.3)
-        modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if self.at.both_ways)]
-        total = sum(m.weight for m in modes)
-        modes = [replace(m, weight=m.weight / total) for m in modes]
-        yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order")
-        size = self.size("standard deviation of a step", 0.5, signed=False)
-        mode = Mode("", 1.0, _one, spread="walk", turns=True)
-        doc = f"The error of the {words} wanders from test to test."
-        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order")
-        if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in self.at.ranges.known]:
-            yield self.frozen(hanging)
+        return self.cause("gain", [mode], size, self.own[0].name)
 
     def frozen(self, read: Sequence[Sensor]) -> Cause:
         """A reading that no longer moves."""
@@ -231,49 +201,33 @@ class _Instruments:
             forms.append(
                 replace(form, name=one_of(s, read), weight=1 / len(read), shapes=(PLACE, held), regime=FROM_THEN)
             )
-        size = Size("share", "1", "1 where it does not follow at all", 0.6, 0.0, 1.0)
-        doc = f"The {self.kind.words} hangs: from one test on it shows the same whatever happens."
-        return Cause(f"sensor.{self.name}.frozen", doc, size, tuple(forms), REPEAT, acts_on="order", common=0.2)
+        known = entry("sensor.*.frozen", self.at)
+        doc = known.cause.doc.format(self.kind.words)
+        return known.with_forms(forms, id=f"sensor.{self.name}.frozen", doc=doc)
 
 
-def one_side(at: Context) -> list[Mode]:
-    """Errors above or below a speed or load that an instrument shows.
-
-    Args:
-        at: what they are made for
-    """
-    modes = []
-    for quantity, word in (("speed", "speed"), ("torque", "load")):
-        other = at.first(quantity)
-        if other and at.ranges.varies(other):
-            modes += _sides(word, KINDS[quantity].unit, at.ranges.low[other], at.ranges.high[other], other)
-    return modes
-
-
-def warm_or_cold(at: Context, own: Sequence[Sensor]) -> list[Mode]:
-    """Errors of probes above or below a temperature of what they measure.
+def sided(at: Context, probes: Sequence[Sensor]) -> list[Mode]:
+    """Errors on one side of a speed or a load that another instrument shows, or of what probes of one kind read.
 
     Args:
         at: what they are made for
-        own: the probes of one kind
+        probes: of one kind; none: no side of what is read
     """
-    low, high = (f(bound.get(s.name, 0.0) for s in own) for f, bound in ((min, at.ranges.low), (max, at.ranges.high)))
-    return _sides("temperature", "K", low, high) if high - low > LEAST_SPAN else []
+    shown = [(q, at.first(kind)) for q, kind in (("w", "speed"), ("tau", "torque"))]
+    limits = [Regime(q, above, s) for q, s in shown if s and at.ranges.varies(s) for above in (True, False)]
+    low, high = (
+        f((b.get(s.name, 0.0) for s in probes), default=0.0) for f, b in ((min, at.ranges.low), (max, at.ranges.high))
+    )
+    if high - low > LEAST_SPAN:
+        limits += [Regime("T", above, span=(low, high)) for above in (True, False)]
 
-
-def _sides(word: str, unit: str, low: float, high: float, other: str = "") -> list[Mode]:
-    """Both sides of what another sensor shows, or of the value itself."""
-    threshold, width = Shape("threshold", unit, f"threshold of the {word}", low, high), USUAL * (high - low)
-
-    def mode(side: float, name: str) -> Mode:
+    def mode(limit: Regime) -> Mode:
         def factor(theta: Theta, row: Row, value: Num) -> Num:
-            seen = row.sensors[other] if other else value
-            return step(side * (seen - theta["threshold"]) / (width * theta["width"]))
+            return limit.beyond(row.sensors[limit.sensor] if limit.sensor else value, theta, at.ranges)
 
-        told = {"quantity": f"{word} {name}", "shape": "threshold"}
-        return Mode(f"{name} a {word}", ONE_SIDE, factor, (threshold, WIDTH), regime=told)
+        return Mode(limit.name, ONE_SIDE, factor, limit.shapes(at.ranges), regime=limit.told)
 
-    return [mode(1.0, "above"), mode(-1.0, "below")]
+    return [mode(limit) for limit in limits]
 
 
 def _one(theta: Theta, row: Row, value: Num) -> Num:
@@ -308,7 +262,3 @@ def _drifting(course: Course) -> Mode:
 
 
 DRIFTS = tuple(_drifting(course) for course in COURSES)
-#: Errors of an instrument that are met as a rule.
-CONSTANT = ("offset", "gain")
-HALVES = "the halves of a test in reversed order"
-MOUNTINGS = "the same point in two mountings or with two fillings"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ....scenarios.measured.table import PLACES, Campaign
-from .march import Phases
 
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
 DWELL = (np.arange(1, 8) / 7) ** 1.2
@@ -16,6 +17,34 @@ STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)
 #: A kind of sensor that reads zero where the machine stands.
 RESTS = ("torque", "speed", "power")
+
+
+@dataclass(frozen=True)
+class Phases:
+    """What N runs go through, all with the same number of phases; a phase of no length changes nothing.
+
+    Args:
+        length: of each phase [s] (N, F)
+        u0, u1: inputs at begin and end, a line between (N, F, nu)
+        row: which row of its test a phase belongs to (F,), in 0..H-1
+        steps: shares of the length where steps end, for each phase
+        read: for each phase the steps (indices) after which is read
+        start: by how much the start temperatures follow the given readings of the first row (N, given)
+        local0, local1: weight of the reading of each given sensor in each row of the test in the inputs at begin and
+            end of each phase (N, F, given, H)
+        steady: whether what is read are steady states
+    """
+
+    length: np.ndarray
+    u0: np.ndarray
+    u1: np.ndarray
+    row: tuple[int, ...]
+    steps: tuple[np.ndarray, ...]
+    read: tuple[tuple[int, ...], ...]
+    local0: np.ndarray
+    local1: np.ndarray
+    start: np.ndarray
+    steady: bool
 
 
 def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:

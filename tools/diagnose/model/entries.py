@@ -1,7 +1,12 @@
-"""The measured vector of a campaign: readings at the ends of dwells, along logged courses, and dwells as logged."""
+"""The measured vector of a campaign: readings at the ends of dwells, along logged courses, and dwells as logged.
+
+Its scatter is a sum of terms. A term is a set of columns, each the effect of one independent standard normal number, or
+a variance of every entry of its own. Its scale is what the card states; where it is `loose` the data may change it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,3 +71,68 @@ class Entries:
         step = np.concatenate([np.full(n, k), np.tile(np.arange(k), len(logged))])
         share = np.array([*PLACES[:k], 1.0])[step]
         return Entries(kind, sensor, row, at, measured, repeat, place_row, step, share)
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
+
+    `loose` is the prior's standard deviation of its log scale.
+    """
+
+    name: str
+    columns: np.ndarray | None = None
+    variance: np.ndarray | None = None
+    loose: float = 0.0
+    covariance: np.ndarray | None = None
+
+    @property
+    def m(self) -> int:
+        """Number of entries."""
+        return len(next(part for part in (self.columns, self.variance, self.covariance) if part is not None))
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The covariance it stands for (m, m)."""
+        if self.covariance is not None:
+            return self.covariance
+        if self.variance is not None:
+            return np.diag(self.variance)
+        assert self.columns is not None
+        return np.asarray(self.columns @ self.columns.T)
+
+    @property
+    def rank(self) -> int:
+        """Number of its `effects`."""
+        return int((self.variance > 0).sum()) if self.variance is not None else self.effects.shape[1]
+
+    @property
+    def effects(self) -> np.ndarray:
+        """Columns (m, k) of a term that has columns or variances."""
+        if self.variance is not None:
+            return np.diag(np.sqrt(self.variance))[:, self.variance > 0]
+        assert self.columns is not None
+        return self.columns
+
+
+def summed(terms: Sequence[Term], scales: np.ndarray, m: int) -> np.ndarray:
+    """The covariance of some terms together (m, m).
+
+    Args:
+        terms: n of them
+        scales: logarithms of factors on their standard deviations (n,)
+        m: number of entries
+    """
+    columns, variance = [np.zeros((m, 0))], np.zeros(m)
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.columns is not None:
+            columns.append(factor * t.columns)
+        elif t.variance is not None:
+            variance += factor**2 * t.variance
+    whole = np.concatenate(columns, axis=1)
+    found = whole @ whole.T
+    found[np.diag_indices(m)] += variance
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.covariance is not None:
+            found += factor**2 * t.covariance
+    return np.asarray(found)

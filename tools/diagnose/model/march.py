@@ -14,61 +14,27 @@ from typing import Any
 import numpy as np
 
 from ....fmu.batch_library import share_rows
+from .duty import Phases
 from .plant import Plant, library, record
 
 
 @dataclass(frozen=True)
-class Phases:
-    """What N runs go through, all with the same number of phases; a phase of no length changes nothing.
+class Marched:
+    """What is shown and its derivatives, which are empty where they are not asked for.
+
+    A run that has no solution, or runs away, holds NaN.
 
     Args:
-        length: of each phase [s] (N, F)
-        u0, u1: inputs at begin and end, a line between (N, F, nu)
-        row: which row of its test a phase belongs to (F,), in 0..H-1
-        steps: shares of the length where steps end, for each phase
-        read: for each phase the steps (indices) after which is read
-        start: by how much the start temperatures follow the given readings of the first row (N, given)
-        local0, local1: weight of the reading of each given sensor in each row of the test in the inputs at begin and
-            end of each phase (N, F, given, H)
-        steady: whether what is read are steady states
-    """
-
-    length: np.ndarray
-    u0: np.ndarray
-    u1: np.ndarray
-    row: tuple[int, ...]
-    steps: tuple[np.ndarray, ...]
-    read: tuple[tuple[int, ...], ...]
-    local0: np.ndarray
-    local1: np.ndarray
-    start: np.ndarray
-    steady: bool
-
-
-@dataclass(frozen=True)
-class Slopes:
-    """Derivatives of what is shown.
-
-    Args:
-        by: by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
+        y: what is shown (N, reads, shown)
+        by: of it by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
         local: by given readings of each row (N, given, H, reads, shown)
         tried: by the plant's tried knobs at each further setting (N, S - 1, H, tried, reads, shown)
     """
 
+    y: np.ndarray
     by: np.ndarray
     local: np.ndarray
     tried: np.ndarray
-
-
-@dataclass(frozen=True)
-class Marched:
-    """What is shown (N, reads, shown), and its derivatives where they are asked for.
-
-    A run that has no solution, or runs away, holds NaN.
-    """
-
-    y: np.ndarray
-    slopes: Slopes | None
 
 
 def march(
@@ -92,17 +58,17 @@ def march(
             hold what their readings alone say
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
-    reads = sum(map(len, phases.read))
-    found = {"y": np.empty((n, reads, len(plant.shown)))}
-    if wanted is not None:
-        found["by"] = np.zeros((n, height, len(plant.knobs) + 1, reads, len(plant.shown)))
-        found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
-        found["tried"] = np.zeros((n, len(p) - 1, height, len(plant.tried), reads, len(plant.shown)))
-    result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
+    reads, shown = sum(map(len, phases.read)), len(plant.shown)
+    sizes: dict[str, tuple[int, ...]] = {"by": (height, len(plant.knobs) + 1), "local": (given, height)}
+    sizes["tried"] = (len(p) - 1, height, len(plant.tried))
+    runs = n if wanted is not None else 0
+    found = {"y": np.empty((n, reads, shown))}
+    found |= {name: np.zeros((runs, *size, reads, shown)) for name, size in sizes.items()}
+    result = record(**{name: values if values.size else 0 for name, values in found.items()})
     duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(wanted or ())))
     places, run = [ctypes.byref(r) for r in (plant.record, duty, result)], library().march
     share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
-    return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if wanted is not None else None)
+    return Marched(**found)
 
 
 def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wanted: np.ndarray) -> Any:

@@ -9,10 +9,10 @@ import numpy as np
 
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
-from .duty import duty
+from .duty import Phases, duty
 from .entries import Entries
 from .formula import Formula
-from .march import Marched, Phases, march
+from .march import Marched, march
 from .plant import Plant
 from .slopes import Slope, same, total
 
@@ -252,13 +252,9 @@ class _Look:
             return found
         if (self.pace != 1).any():
             logged = self._paced(np.ones(self.n), wanted)
-            found.y[:, along] = logged.y[:, along]
-            if found.slopes is not None and logged.slopes is not None:
-                found.slopes.by[:, :, :, along] = logged.slopes.by[:, :, :, along]
-                found.slopes.local[:, :, :, along] = logged.slopes.local[:, :, :, along]
-                found.slopes.tried[:, :, :, :, along] = logged.slopes.tried[:, :, :, :, along]
-        if found.slopes is not None:
-            found.slopes.by[:, :, -1, along] = 0.0
+            for name in ("y", "by", "local", "tried"):
+                getattr(found, name)[..., along, :] = getattr(logged, name)[..., along, :]
+        found.by[:, :, -1, along] = 0.0
         return found
 
     def _paced(self, pace: np.ndarray, wanted: Collection[int] | None) -> Marched:
@@ -351,13 +347,12 @@ class _Look:
         """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
         o, entries = self.o, sorted(self._entries(), key=lambda e: e[0])
         found = self._run({k for _, k, _ in entries})
-        assert found.slopes is not None
         test = o.test
-        local = found.slopes.local[test, :, :, o.reads]
+        local = found.local[test, :, :, o.reads]
         signs = np.array([o.signs[s.name] for s in o.given])
         by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
-        own = found.slopes.by[test, :, :, o.reads]  # p, H, knobs + 1, shown
-        tried = found.slopes.tried[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
+        own = found.by[test, :, :, o.reads]  # p, H, knobs + 1, shown
+        tried = found.tried[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
         tried = tried.reshape(len(test), o.height, -1, found.y.shape[2])
         all_by = np.concatenate([own, by_truth, tried], axis=2)
         by = np.zeros((len(test), found.y.shape[2], self.d))

@@ -20,22 +20,23 @@ from ....fmu import emit
 from ....fmu.batch_library import address, instructions, load, widen
 from ....model.core.flat import FlatModel
 from ....model.core.flatten import flatten
-from ....model.machines.spec import Spec, assemble
+from ....model.machines.spec import PartSpec, Spec, assemble
 from ....model.parts.free_form import EXTRA_PARTS
-from ....scenarios.nuisances import Nuisance
-from ..library.cause import Form
+
+#: Parts that are added to a rig, and what they meet.
+Added = tuple[Sequence[PartSpec], Sequence[tuple[str, ...]]]
+#: Of a sparse matrix: where its columns begin (columns + 1), and the row of each entry.
+Pattern = tuple[np.ndarray, np.ndarray]
 
 
-def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
-    """The rig with the parts of all forms, neutral."""
+def superset(spec: Spec, additions: Iterable[Added]) -> Spec:
+    """The rig with all additions, neutral."""
     known = {part.name for part in spec.parts}
-    for form in forms:
-        added = [part for part in form.parts if part.name not in known]
-        if added:
-            own = {part.name for part in added}
-            nets = [net for net in form.connections if any(port.partition(".")[0] in own for port in net)]
-            spec = spec.with_parts(added, nets, EXTRA_PARTS)
-            known |= own
+    for parts, nets in additions:
+        if added := {part.name for part in parts} - known:
+            joined = [net for net in nets if any(port.partition(".")[0] in added for port in net)]
+            spec = spec.with_parts([part for part in parts if part.name in added], joined, EXTRA_PARTS)
+            known |= added
     return spec
 
 
@@ -82,13 +83,12 @@ class Plant:
             "reading_slopes": [ca.jacobian(y, w), ca.jacobian(y, by)],
             "trials": [ca.jacobian(both, sizes), ca.jacobian(y, sizes)],
         }
-        self._compiled = Compiled([w, flat.u, flat.p], results)
-        self.record = self._record(self._compiled)
+        self.record = self._record(*_compiled([w, flat.u, flat.p], results))
 
-    def _record(self, compiled: Compiled) -> Any:
+    def _record(self, functions: Mapping[str, int], patterns_of: Sequence[Sequence[Pattern]]) -> Any:
         """The plant as the march through its runs knows it."""
         unknowns = (*self.flat.states, *self.flat.algebraic)
-        (_, rates), (slopes,), (_,), shown, trials = compiled.patterns.values()
+        (_, rates), (slopes,), (_,), shown, trials = patterns_of
         patterns = [entries for pattern in (rates, slopes, *shown, *trials) for entries in pattern]
         return record(
             nx=self.nx,
@@ -100,7 +100,7 @@ class Plant:
             shown=len(self.shown),
             tried=len(self.tried),
             most=max(len(entries) for entries in patterns),
-            **{name: compiled.place(name) for name in compiled.patterns},
+            **functions,
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
             scale=self.scale,
             guess=self.flat.starts("algebraic"),
@@ -110,23 +110,23 @@ class Plant:
     @staticmethod
     def of(
         spec: Spec,
-        forms: Iterable[Form | Nuisance],
+        additions: Iterable[Added],
         knobs: Sequence[str],
         given: Sequence[str],
         shown: Sequence[str],
         tried: Sequence[str] = (),
     ) -> Plant:
-        """The superset of a rig and some forms.
+        """The superset of a rig and what is added to it.
 
         Args:
             spec: the rig, driven as the campaign drives it
-            forms: what may act in it, and nuisances that need parts
+            additions: parts of causes and nuisances
             knobs, given, shown, tried: see the class
 
         Raises:
             GearheatError: the superset has no sound equations
         """
-        flat, own = flatten(assemble(superset(spec, forms))), {part.name for part in spec.parts}
+        flat, own = flatten(assemble(superset(spec, additions))), {part.name for part in spec.parts}
         added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
         return Plant(_settled(flat, added - set(knobs)), knobs, given, shown, tried)
 
@@ -134,46 +134,42 @@ class Plant:
 def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
     """The model with parameters that nothing changes: 0 and 1 are numbers in it, and equal ones of a name are one."""
     first: dict[tuple[str, float], Any] = {}
-    old, new = [], []
-    for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True):
-        if q.name in fixed:
-            old.append(symbol)
-            value = abs(q.start)
-            new.append(
-                ca.SX(q.start)
-                if value in (0.0, 1.0)
-                else first.setdefault((q.name.rpartition(".")[2], q.start), symbol)
-            )
-    parts = [flat.ode, flat.residual, flat.y]
-    ode, residual, y = ca.substitute(parts, [ca.vertcat(*old)], [ca.vertcat(*new)]) if old else parts
+    pairs = [(symbol, q) for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True) if q.name in fixed]
+    if not pairs:
+        return flat
+    new = [
+        ca.SX(q.start) if abs(q.start) in (0.0, 1.0) else first.setdefault((q.name.rpartition(".")[2], q.start), symbol)
+        for symbol, q in pairs
+    ]
+    old = ca.vertcat(*(symbol for symbol, _ in pairs))
+    ode, residual, y = ca.substitute([flat.ode, flat.residual, flat.y], [old], [ca.vertcat(*new)])
     return replace(flat, ode=ode, residual=residual, y=y)
 
 
-class Compiled:
+def _compiled(
+    arguments: Sequence[Any], results: Mapping[str, Sequence[Any]]
+) -> tuple[dict[str, int], list[list[Pattern]]]:
     """Functions of the same symbolic columns in one library; their results hold the entries of sparse matrices only.
 
     Args:
         arguments: symbolic columns
         results: name of a function -> one or two expressions
 
+    Returns:
+        where each function lies in memory; of each its results' patterns
+
     Raises:
         FmuError: the compiler fails
     """
-
-    def __init__(self, arguments: Sequence[Any], results: Mapping[str, Sequence[Any]]) -> None:
-        #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
-        self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
-        names, texts = [f"i{k}" for k in range(len(arguments))], []
-        for name, found in results.items():
-            outputs = [ca.SX(r).nz[:] for r in found] + [ca.SX(0, 1)] * (2 - len(found))
-            function = ca.Function(name, list(arguments), outputs, names, ["first", "second"], {"cse": True})
-            texts.append(emit.function(function, "lanes_", "lanes"))
-            texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
-        self._library = _loaded("\n".join(texts))
-
-    def place(self, name: str) -> int:
-        """Where a function lies in memory."""
-        return ctypes.c_void_p.in_dll(self._library, f"place_{name}").value or 0
+    names, texts = [f"i{k}" for k in range(len(arguments))], []
+    for name, found in results.items():
+        outputs = [ca.SX(r).nz[:] for r in found] + [ca.SX(0, 1)] * (2 - len(found))
+        function = ca.Function(name, list(arguments), outputs, names, ["first", "second"], {"cse": True})
+        texts.append(emit.function(function, "lanes_", "lanes"))
+        texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
+    made = _loaded("\n".join(texts))
+    places = {name: ctypes.c_void_p.in_dll(made, f"place_{name}").value or 0 for name in results}
+    return places, [[_pattern(r) for r in found] for found in results.values()]
 
 
 @cache
@@ -208,6 +204,6 @@ def record(**values: int | np.ndarray) -> Any:
     return made
 
 
-def _pattern(matrix: Any) -> tuple[np.ndarray, np.ndarray]:
+def _pattern(matrix: Any) -> Pattern:
     sparsity = ca.SX(matrix).sparsity()
     return np.array(sparsity.colind(), dtype=np.int64), np.array(sparsity.row(), dtype=np.int64)

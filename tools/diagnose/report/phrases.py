@@ -7,77 +7,10 @@ from collections.abc import Iterable
 
 from ....model.core.faults import name_all
 from ..answer.evidence import Estimate, GrossReading, NuisanceOff, ResidualMean, VarianceComponent
-from ..answer.findings import Answer, Cause, Findings, Gain, Impact
+from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
+from ..library.entries import TABLE
 
-#: Names of the taxonomy, but for faults of instruments.
-NAMES = {
-    "losses.churning": "churning of the oil",
-    "losses.oil_viscosity": "viscosity of the oil",
-    "losses.oil_level": "oil level",
-    "losses.bearing_preload": "bearing preload",
-    "losses.bearing_friction": "friction of the bearings",
-    "losses.pair_preload": "preload of a pair of bearings",
-    "losses.clutch_drag": "drag of a clutch or brake",
-    "losses.pump_power": "power of the pump",
-    "losses.pump_leak": "leak of the pump",
-    "losses.motor_drag": "drag of the motor",
-    "losses.motor_constant": "torque constant of the motor",
-    "losses.motor_windings": "resistance of the windings",
-    "losses.seal_drag": "seal drag",
-    "losses.mesh_friction": "friction of the teeth",
-    "losses.mesh_direction": "friction of the teeth in one direction",
-    "losses.film_starvation": "teeth short of oil film",
-    "losses.windage": "windage",
-    "losses.torque_only": "a torque loss without heat",
-    "heat.external_source": "heat from outside",
-    "heat.parked": "heat while it stands",
-    "cooling.air": "cooling by the air",
-    "cooling.emissivity": "cooling by radiation",
-    "cooling.foundation": "heat into the foundation",
-    "cooling.contact": "thermal contact inside the housing wall",
-    "cooling.oil_wall": "heat transfer from oil to wall",
-    "cooling.humidity": "cooling that follows the humidity",
-    "cooling.cooler": "oil cooler",
-    "cooling.thermostat": "thermostat of the cooler",
-    "cooling.fan": "fan",
-    "cooling.oil_flow": "flow of the oil",
-    "thermal.mass": "heat capacities",
-    "thermal.split": "place where the heat appears",
-    "procedure.not_stationary": "readings taken before they were steady",
-    "procedure.order": "cooling or losses that change over the running order",
-    "procedure.day_scatter": "scatter from day to day",
-    "model.unexplained": "something outside the library",
-}
-#: Kinds of sensors.
-KINDS = {
-    "oil_temp": "oil thermometer",
-    "wall_temp": "wall thermometer",
-    "ambient": "room thermometer",
-    "torque": "torque transducer",
-    "speed": "speed sensor",
-    "power": "power meter",
-    "efficiency": "efficiency reading",
-    "current": "current reading",
-}
-#: Faults of a sensor.
-FAULTS = {
-    "offset": "zero error of the {}",
-    "bias": "zero error of the {}",
-    "gain": "gain error of the {}",
-    "drift": "drifting zero of the {}",
-    "step": "zero of the {} that jumped",
-    "position": "place of the {}",
-    "heated": "{} warmed by the gearbox",
-    "random_walk": "wandering zero of the {}",
-    "lag": "lag of the {}",
-    "frozen": "frozen {}",
-    "spikes": "spikes of the {}",
-    "swapped": "swapped leads of the {}",
-    "by_direction": "error of the {} that depends on the direction",
-    "since": "error of the {} from a test on",
-    "mounting": "error of the {} that changes with each mounting",
-}
 #: Parts of a value are named where they are not more than these.
 FEW_PARTS = 3
 #: Share by which one error must exceed another to be worse.
@@ -100,13 +33,14 @@ LOGARITHM = ("logarithm of ", "ln_")
 
 def name_of(cause: str) -> str:
     """A cause in plain words; one of a user's library by the end of its identifier."""
-    if cause in NAMES:
-        return NAMES[cause]
     family, _, rest = cause.partition(".")
     kind, _, fault = rest.partition(".")
+    if cause == UNEXPLAINED:
+        return "something outside the library"
     if family == "sensor" and fault:
-        return FAULTS.get(fault, f"{fault.replace('_', ' ')} of the {{}}").format(KINDS.get(kind, f"{kind} sensor"))
-    return cause.rpartition(".")[2].replace("_", " ")
+        words = TABLE["faults"].get(fault, f"{fault.replace('_', ' ')} of the {{}}")
+        return str(words.format(TABLE["instruments"].get(kind, f"{kind} sensor")))
+    return str(TABLE.get(cause, {}).get("name", cause.rpartition(".")[2].replace("_", " ")))
 
 
 def names_of(causes: Iterable[str], last: str = "and", most: int = 100) -> str:

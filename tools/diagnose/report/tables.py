@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from ...show.columns import cell_text
 from ..answer.channels import ENDINGS
-from ..answer.design import APART
 from ..answer.evidence import ResidualMean
-from ..answer.findings import Cause, Findings, Isolability
+from ..answer.findings import APART, Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
     estimate,

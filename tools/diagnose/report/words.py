@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..answer.design import APART
-from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
+from ..answer.findings import APART, UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
 from .phrases import name_of, names_of, sentence
 
