@@ -75,7 +75,6 @@ def cause(id: str, probability: float, *, at_bound: str = "", value: float | Non
         ),
         forms=(FormShare(name="", share=1.0),),
         exposes=exposes,
-        q=2.7e-190 if probability > 0.5 else 0.4,
     )
 
 

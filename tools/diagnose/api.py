@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from ...model.errors import DataError, Problems, ScenarioError
 from ...model.files import flows
@@ -21,7 +21,7 @@ from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.sensors import CONTEXT
 from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
-from ..show.console import as_json as json_text, file_of, progress_bar, write
+from ..show.console import PICTURES, as_json as json_text, file_of, progress_bar, write
 from ..show.display import Display, lines_of
 from ..show.picture import Picture
 from .answer.findings import Findings
@@ -35,8 +35,6 @@ from .request import MOST, PlanRequest, Request, read, read_plan
 
 File = str | Path
 Files = File | Sequence[File] | None
-#: Kinds of pictures by the ending of their file's name.
-PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
 #: Rows of a table that a guess of its columns shows.
 SHOWN = 5
 
@@ -68,8 +66,7 @@ class Diagnosis(Display, Findings):
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Answers with their probabilities."""
         named = [(" + ".join(" or ".join(names) for names in a.causes), a.probability) for a in self.answers]
-        rows = [(names or "nothing wrong", probability) for names, probability in named]
-        return ("answer", "probability"), rows
+        return ("answer", "probability"), [(names or "nothing wrong", probability) for names, probability in named]
 
     def drawing(self) -> Picture | None:
         """Readings less the model, without and with the leading cause; None where no cause is pictured."""
@@ -136,6 +133,10 @@ class PlanAnswer(Display, Plan):
         """Experiments in the order of what they tell."""
         return ("experiment",), [(self.what(one.id),) for one in self.catalogue]
 
+    def drawing(self) -> Picture | None:
+        """The distances of the causes; None where none were named."""
+        return Picture(plans.picture(self), self.title) if self.causes else None
+
     def as_dict(self) -> dict[str, Any]:
         """The JSON object, without what is not known."""
         return as_object(self)
@@ -148,18 +149,6 @@ class PlanAnswer(Display, Plan):
             width: of the screen
         """
         return plans.text(self, everything=everything, width=width)
-
-    def save_picture(self, path: str | Path) -> Path:
-        """Write the distances of the causes as a picture.
-
-        Args:
-            path: .png or .svg
-
-        Raises:
-            DataError: it cannot be written
-        """
-        write(Path(path), plans.picture(self, PICTURES[Path(path).suffix.lower()]))
-        return Path(path)
 
 
 def diagnose(
@@ -271,7 +260,8 @@ def plan(
     request = PlanRequest(rig, tuple(separate), _path(card), _path(points), _paths(library), reference)
     problems, picture = [], _path(out)
     if picture is not None and picture.suffix.lower() not in PICTURES:
-        problems.append(f"--out {out}: is no picture that can be drawn. Give a name that ends in .png or .svg.")
+        kinds = " or ".join(PICTURES)
+        problems.append(f"--out {out}: unknown kind of picture. Its name must end in {kinds}.")
     if picture is not None and not separate:
         problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
     given = {"--json": file_of(json), "--out": picture}

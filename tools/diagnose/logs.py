@@ -166,13 +166,7 @@ def composed(
     return replace(told, findings=with_words(findings))
 
 
-def _findings(
-    made: Setting,
-    found: Found,
-    decision: Decision,
-    inputs: Inputs,
-    data: Logs,
-) -> f.Findings:
+def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, data: Logs) -> f.Findings:
     """The findings without pictures and words."""
     logs = data.logs
     segments = sum(int(log.stretch.max()) + 1 for log in logs)

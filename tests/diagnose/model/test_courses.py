@@ -16,7 +16,7 @@ from gearheat.scenarios.measured.table import PLACES, Campaign, Course, Series
 from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.problem import Problem
-from gearheat.tools.diagnose.model import duty
+from gearheat.tools.diagnose.model import march
 from gearheat.tools.diagnose.model.formula import Formula
 from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.model.observe import Observed
@@ -124,8 +124,8 @@ def test_few_steps_are_enough_along_courses(prepared, monkeypatch) -> None:
     o, z = observed(prepared, campaign), np.zeros(len(prepared.problem.data.nuisances))
     found = o.shown_by(z, [])
     many = np.unique(np.r_[np.linspace(0, 1, 201)[1:] ** 2, PLACES])
-    monkeypatch.setattr(duty, "LOGGED", many)
-    monkeypatch.setattr(duty, "READ", tuple(np.flatnonzero(np.isin(many, [*PLACES, 1.0])).tolist()))
+    monkeypatch.setattr(march, "LOGGED", many)
+    monkeypatch.setattr(march, "READ", tuple(np.flatnonzero(np.isin(many, [*PLACES, 1.0])).tolist()))
     assert found == pytest.approx(observed(prepared, campaign).shown_by(z, []), abs=0.12)
 
 

@@ -17,14 +17,13 @@ from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.scenarios.nuisances import Nuisance
 from gearheat.tools.diagnose.library.cause import Cause, Form, Shape, Size
-from gearheat.tools.diagnose.model import duty
-from gearheat.tools.diagnose.model.duty import STEADY, Phases
+from gearheat.tools.diagnose.model import march as marching
 from gearheat.tools.diagnose.model.formula import Formula
-from gearheat.tools.diagnose.model.march import march
+from gearheat.tools.diagnose.model.march import STEADY, Phases, march
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.model.plant import Plant
 
-FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
+FOLDER = Path(marching.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
 FRICTION, BATH = Nuisance("mu", {"gear_set.k_mu": 1.0}, 0.2, 0.2), Nuisance("c", {"oil.c_p": 1.0}, 0.3, 0.3)
 EXTRA = {"G_ref": 0.0, "dT_ref": 30.0, "e": 0.0, "w_ref": 10.0, "tau_ref": 1000.0, "c": 0.0, "forward": 1.0}
@@ -136,8 +135,8 @@ def test_candidates_of_one_part_with_other_shapes_keep_apart(made, planetary) ->
 
 def test_few_steps_are_enough(made, acting, monkeypatch) -> None:
     found = made().shown_by(Z, acting)
-    monkeypatch.setattr(duty, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
-    monkeypatch.setattr(duty, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
+    monkeypatch.setattr(marching, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
+    monkeypatch.setattr(marching, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
     assert found == pytest.approx(made().shown_by(Z, acting), abs=0.01)
 
 

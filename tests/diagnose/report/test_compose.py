@@ -67,10 +67,9 @@ def test_a_picture_shows_what_the_cause_takes_away(made: Made) -> None:
     assert one.before != one.after
 
 
-def test_quantities_that_are_not_measured_give_way_to_the_running_order(made: Made) -> None:
-    data = made.found.problem.data.campaign
-    assert pictures.quantity("humidity", data, {"order"}) == "order"
-    assert pictures.quantity("order", data, {"order", "rise"}) == "order"
+def test_what_is_not_measured_is_drawn_against_the_running_order(made: Made) -> None:
+    (one,) = pictures.pictures(made.found, made.h, {"order"})
+    assert one.quantity == "order"
 
 
 def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tmp_path: Path) -> None:

@@ -10,16 +10,15 @@ import pytest
 from gearheat.model.machines.spec import PartSpec
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import DIAGNOSED
-from gearheat.tools.diagnose.library.cause import Cause, Form, Row, Size, Theta, Values
+from gearheat.tools.diagnose.library.cause import Form, Row, Theta, Values
 from gearheat.tools.diagnose.report.extension import Applied, directions, extended
 
 RIG = load("helical_two_stage")
 OIL = next(name for name, kinds in RIG.entries.items() if "oil" in kinds)
-SIZE = Size("G", "W/K", "conductance", 2.0, 0.0, 20.0)
 
 
 def applied(form: Form, id: str = "cooling.air", **theta: float) -> Applied:
-    return Applied(Cause(id, "It cools.", SIZE, (form,)), form, theta)
+    return Applied(id, "It cools.", form, theta)
 
 
 def beside(theta: Theta, row: Row) -> Values:

@@ -17,6 +17,7 @@ from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
 from gearheat.tools.diagnose.report.plan import picture, sentence, text as printed
 from gearheat.tools.diagnose.request import PlanInputs, unknown_causes
+from gearheat.tools.show.drawing import png, svg
 from typer.testing import CliRunner
 
 PAIR = (AIR, EMISSIVITY)
@@ -90,8 +91,8 @@ def test_classes_and_faint_causes_are_told() -> None:
 
 
 def test_pictures_have_the_same_bytes_twice() -> None:
-    assert picture(plan(), "svg") == picture(plan(), "svg")
-    assert picture(plan(), "png").startswith(b"\x89PNG")
+    assert svg(picture(plan())) == svg(picture(plan()))
+    assert png(picture(plan())).startswith(b"\x89PNG")
 
 
 def find(inputs: PlanInputs, progress: Progress) -> Plan:

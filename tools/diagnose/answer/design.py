@@ -14,8 +14,9 @@ from ..infer.evidence import White
 from ..infer.found import Found
 from ..infer.problem import Acting, Look, Noise
 from ..infer.screen import limits
+from ..model.entries import Seen
 from ..model.noise import terms
-from ..model.observe import Observed, Seen
+from ..model.observe import Observed
 from ..setting import Setting
 from . import findings
 from .experiments import Check, Experiment, build_tests

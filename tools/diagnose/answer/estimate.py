@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 from scipy.stats import norm
@@ -19,11 +18,10 @@ from ..library.cause import Form, Shape, Size
 from ..model.observe import Observed
 from . import channels, findings
 from .decide import Member
-from .evidence import Estimate
+from .evidence import Bound, Estimate
 
 #: Changes of the loss by name, with their units.
 LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
-Bound = Literal["", "low", "high"]
 #: Half width of a 95 % interval in standard deviations.
 WIDE = 1.96
 #: The power of the detectable size.

@@ -8,6 +8,8 @@ from pydantic import Field
 
 from .numbers import Array, Interval, Model, Number, P, Probability
 
+Bound = Literal["", "low", "high"]
+
 
 class Estimate(Model):
     """A fitted parameter with its 95 % interval."""
@@ -17,7 +19,7 @@ class Estimate(Model):
     ci95: Interval
     unit: str
     doc: str = Field(default="", description="what it is, in words")
-    at_bound: Literal["", "low", "high"] = Field(default="", description="the bound that the value sits on")
+    at_bound: Bound = Field(default="", description="the bound that the value sits on")
 
 
 class GrossReading(Model):

@@ -101,8 +101,6 @@ class Cause(Model):
         default=(), description="most probable first; the name is empty for the general form"
     )
     impact: dict[str, Impact] = Field(default={}, description="its own part of the impact")
-    p_split: P | None = Field(default=None, description="F test on the half of the tests that did not choose its form")
-    q: P | None = Field(default=None, description="the same, after Benjamini and Hochberg over all causes")
     doc: str = Field(default="", description="where it acts and what it does")
     exposes: str = Field(default="", description="the experiment that shows it directly")
     like: str = Field(default="", description="class of causes that count as one answer, and why")

@@ -45,28 +45,21 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
         seed: of all draws
         progress: called with the share done
     """
-    plans = schemes(found.problem.data.campaign)
+    problem, options = found.problem, Options(seed=seed, most=MOST, critical=found.critical)
+    plans = schemes(problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
     for scheme, folds in plans.items():
         errors = []
         for rows in folds:
             with suppress(SolveError):
-                errors.append(_fold(found, rows, seed))
+                held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
+                errors.append(foresee(problem, found.formulas, held, options))
             done += 1
             progress(done / total)
         if errors:
-            told += [
-                g for i in range(len(found.problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, seed))
-            ]
-    oil = [s.name for s in found.problem.data.read if s.kind == "oil_temp"]
+            told += [g for i in range(len(problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, seed))]
+    oil = [s.name for s in problem.data.read if s.kind == "oil_temp"]
     return sorted(told, key=lambda g: g.channel not in oil)
-
-
-def _fold(found: Found, rows: np.ndarray, seed: int) -> Foreseen:
-    """Everything anew without the readings of some rows, and what it says of them."""
-    problem = found.problem
-    held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
-    return foresee(problem, found.formulas, held, Options(seed=seed, most=MOST, critical=found.critical))
 
 
 def _gain(

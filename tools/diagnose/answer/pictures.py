@@ -17,8 +17,6 @@ from .estimate import loose_variance
 from .evidence import Picture, Rows, View
 from .numbers import array
 
-#: What a cause may act on, where it is no column -> the kind of sensor that reads it.
-ACTS_ON = {"w": "speed", "tau": "torque", "T": "oil_temp", "film": "speed"}
 #: Causes that a channel names at least this probable.
 NAMED = 0.02
 
@@ -69,6 +67,8 @@ def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[st
 def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[Picture, ...]:
     """For each cause of a hypothesis what is left without and with it, in the channel that shows it best.
 
+    It is drawn against what the cause acts on; against the running order where that is not measured.
+
     Args:
         found: the search
         h: the hypothesis
@@ -87,24 +87,10 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
         table = np.full((2, o.campaign.n), np.nan)
         table[:, o.row[mine]] = left[mine] + effect[mine], left[mine]
         before, after = (array(channels.difference(sensor, 1.0) * line) for line in table)
-        drawn = quantity(acting.formula.cause.acts_on, o.campaign, quantities)
-        made.append(Picture(cause=acting.id, channel=sensor.name, quantity=drawn, before=before, after=after))
+        acts_on = acting.formula.cause.acts_on
+        against = acts_on if acts_on in quantities else "order"
+        made.append(Picture(cause=acting.id, channel=sensor.name, quantity=against, before=before, after=after))
     return tuple(made)
-
-
-def quantity(acts_on: str, campaign: Campaign, known: Collection[str]) -> str:
-    """Key of the quantity that a cause acts on; the running order where it is not measured.
-
-    Args:
-        acts_on: as the cause has it
-        campaign: the data
-        known: what readings can be drawn against
-    """
-    if acts_on in known:
-        return acts_on
-    kind = ACTS_ON.get(acts_on, "")
-    ranked = sorted((s for s in campaign.sensors if s.kind == kind), key=lambda s: s.role != "given")
-    return next((s.name for s in ranked if s.name in known), "order")
 
 
 def views(found: Found) -> tuple[View, ...]:

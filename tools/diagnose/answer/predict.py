@@ -67,23 +67,18 @@ def simulate(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarr
 def _observed(setting: Setting, found: Found, points: Campaign) -> Observed:
     """The points as a campaign that reads all sensors of the data; causes that follow readings take the nominal's."""
     data = found.problem.data
+    order = data.campaign.order  # of the data, in which the points stand from 0 at the first test to 1 at the last
     guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in data.read}
     filled = replace(points, sensors=(*points.given, *data.read), values={**points.values, **guess})
     for _ in range(2):
         o = Observed(setting.plant, filled, data.nuisances, setting.oils, setting.scenario.operating_point)
-        o.features[0] = _progress(data.campaign, points)
+        o.features[0] = np.clip((points.order - order.min()) / max(np.ptp(order), 1.0), 0.0, 1.0)[points.test]
         table = _predicted(found.problem, found.null, o)
         known = {
             s.name: np.where(np.isfinite(row), row, guess[s.name]) for s, row in zip(data.read, table, strict=True)
         }
         filled = replace(filled, values={**filled.values, **known})
     return o
-
-
-def _progress(data: Campaign, points: Campaign) -> np.ndarray:
-    """Running order of the rows of points in that of the data, 0 for its first test and 1 for its last (n,)."""
-    low, high = float(data.order.min()), float(data.order.max())
-    return np.asarray(np.clip((points.order - low) / max(high - low, 1.0), 0.0, 1.0)[points.test])
 
 
 def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:

@@ -11,10 +11,10 @@ from typing import Self
 import numpy as np
 
 from ....model.errors import SolveError
-from ..model.entries import Term, summed
+from ..model.entries import Seen, Term, summed
 from ..model.formula import Formula
 from ..model.noise import alike, input_scatter, stacked, terms
-from ..model.observe import Observed, Seen
+from ..model.observe import Observed
 from .scales import most_likely
 
 #: Half widths of its prior to which a cause is followed.
@@ -226,13 +226,6 @@ class Problem:
         k = int(np.searchsorted(np.cumsum(sizes), aside.number, side="right"))
         o, number = self.campaigns[k], aside.number - sum(sizes[:k])
         return k, aside.sensor or o.read[o.kind[number]].name
-
-    def touched(self, aside: Aside, look: Look) -> frozenset[int]:
-        """The compared readings that a reading has to do with."""
-        if not aside.sensor:
-            return frozenset([aside.number])
-        effect = np.abs(dict(self.inputs(look))[aside.sensor][:, aside.number])
-        return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
 
     def bends(self, formulas: Sequence[Formula]) -> list[list[tuple[Acting, np.ndarray]]]:
         """Of each formula, as the file has the rig: far out, and its secant less its slope (M,), of one half width."""

@@ -11,7 +11,7 @@ from ....model.errors import suggestion
 from ....model.machines.spec import Spec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Values, as_array
+from .cause import Cause, Form, Ranges, Row, Values, as_array
 
 #: Accuracy to which a form has to leave things as they are at size zero, relative.
 NEUTRAL = 1e-6
@@ -68,11 +68,6 @@ def parameters(spec: Spec) -> dict[str, float]:
     return values
 
 
-def middle(shapes: Sequence[Shape]) -> dict[str, float]:
-    """Shapes at the middle of their priors."""
-    return {shape.name: float(shape.at(0.0)) for shape in shapes}
-
-
 def _of_form(
     cause: Cause,
     form: Form,
@@ -90,7 +85,7 @@ def _of_form(
     base = _Known("parameter", {**stated, **added})
     shown = _Known("sensor", {s.name: ranges.mid.get(s.name, 300.0) for s in sensors})
     read = _Known("compared sensor", {s.name: shown[s.name] for s in sensors if s.role == "read"})
-    theta = {cause.size.name: 0.0} | middle(form.shapes)
+    theta = {cause.size.name: 0.0} | {shape.name: float(shape.at(0.0)) for shape in form.shapes}
     row = Row(base=base, sensors=shown, order=0.5, direction=1.0, rise=ranges.rise, dwell=7200.0)
     own = {part.name for part in form.parts}
     said: list[tuple[Callable[[], Values], Mapping[str, float]]] = []

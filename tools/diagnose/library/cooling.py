@@ -32,11 +32,11 @@ def causes(at: Context) -> Iterator[Cause]:
     roles = at.roles
     air = [f"{name}.surface" for name in roles.surfaces]
     if air:
-        yield _beside_own_law(_conducting(at, "cooling.air", air), roles.surfaces, at)
+        yield _conducting(at, "cooling.air", air, roles.surfaces)
         yield from emissivity(at)
     if roles.room and (roles.foundation or air):
         ports = [roles.bodies_of(name)[0] for name in roles.foundation] or air[:1]
-        yield _beside_own_law(_conducting(at, "cooling.foundation", ports), roles.foundation, at)
+        yield _conducting(at, "cooling.foundation", ports, roles.foundation)
     if roles.contacts:
         yield contact(at)
     if roles.oil_side:
@@ -50,14 +50,10 @@ def causes(at: Context) -> Iterator[Cause]:
     yield from scaled(at, "cooling.oil_flow")
 
 
-def _conducting(at: Context, name: str, ports: Sequence[str]) -> Cause:
-    """A cause of the table that is an extra conductance from some ports to the room."""
+def _conducting(at: Context, name: str, ports: Sequence[str], parts: Sequence[str]) -> Cause:
+    """A cause of the table: an extra conductance from some ports to the room, or parts that conduct otherwise."""
     known = entry(name, at)
-    return known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
-
-
-def _beside_own_law(cause: Cause, parts: Sequence[str], at: Context) -> Cause:
-    """A cause that is a conductance with forms by which parts between the machine and the room conduct more or less."""
+    cause = known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
     return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / at.ranges.rise)
 
 

@@ -120,10 +120,7 @@ class Extras:
         return self.forms(made, [place.name for place in places], kept, limits, as_keys)
 
     def conductors(
-        self,
-        ports: Sequence[str],
-        shapes: Iterable[Shape],
-        limits: Sequence[Regime] = (),
+        self, ports: Sequence[str], shapes: Iterable[Shape], limits: Sequence[Regime] = ()
     ) -> tuple[Form, ...]:
         """Conductances to the room: one form for all bodies, one for each of several, one for each regime.
 

@@ -196,16 +196,6 @@ class Context:
         P = self.ranges.loss
         return Size("P_ref", "W", f"{doc}, at the middle of the data", sd * P, low * P, high * P)
 
-    def conductance(self, doc: str, sd: float, low: float, high: float) -> Size:
-        """A conductance [W/K] at the typical temperature difference.
-
-        Args:
-            doc: in words
-            sd, low, high: in shares of the typical conductance from oil to room
-        """
-        G = self.ranges.conductance
-        return Size("G_ref", "W/K", doc, sd * G, low * G, high * G)
-
     def regimes(self, quantities: Iterable[str]) -> tuple[Regime, ...]:
         """Both sides of each quantity (as those of `Regime`) that varies enough; from a test on ("order")."""
         room, ranges = self.first("ambient"), self.ranges

@@ -36,18 +36,14 @@ def causes(at: Context) -> Iterator[Cause]:
             yield entry("procedure.day_scatter", at).with_forms([day])
 
 
-def _pace(missing: Num) -> Num:
-    """Share of the dwell that took place, never below zero, one where nothing is missing."""
-    return smooth_max(1 - missing, 0.0, ROUND) / smooth_max(1.0, 0.0, ROUND)
-
-
 def not_stationary(at: Context) -> Cause:
     """Readings taken too early: by a share of the dwell, by some minutes, or now more and now less."""
 
     def pace(first: float, later: float, minutes: bool) -> Callable[[Theta, Row], Num]:
         def of(theta: Theta, row: Row) -> Num:
             missing = theta["missing"] * (first * (1 - row.second) + later * row.second)
-            return _pace(missing * EARLY / row.dwell if minutes else missing)
+            left = 1 - (missing * EARLY / row.dwell if minutes else missing)
+            return smooth_max(left, 0.0, ROUND) / smooth_max(1.0, 0.0, ROUND)
 
         return of
 

@@ -6,7 +6,7 @@ the same at all points, or follow speed, load or direction: a documented change 
 
 from __future__ import annotations
 
-import importlib.util
+import runpy
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
@@ -95,23 +95,20 @@ def _others(files: Iterable[Path], wrong: list[str]) -> Iterator[tuple[str, Fami
 
 def _from_file(path: Path, wrong: list[str]) -> Family | None:
     """The function `causes` of a file."""
-    spec = importlib.util.spec_from_file_location(f"gearheat_causes_{path.stem}", path)
-    if spec is None or spec.loader is None:
+    if path.suffix != ".py":
         wrong.append(f"--library {path.name}: is no Python file. Give a file FILE.py that defines causes().")
         return None
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        found = runpy.run_path(str(path), run_name=f"gearheat_causes_{path.stem}")
     except OSError as error:
         wrong.append(f"--library {path.name}: cannot be read ({error.strerror}). Check the path.")
         return None
     except Exception as error:  # a user's file may fail in any way
         wrong.append(f"--library {path.name}: fails: {type(error).__name__}: {error}.")
         return None
-    family = getattr(module, "causes", None)
+    family = found.get("causes")
     if not callable(family):
-        known = [name for name, value in vars(module).items() if callable(value)]
-        close = suggestion("causes", known)
+        close = suggestion("causes", [name for name, value in found.items() if callable(value)])
         wrong.append(f"--library {path.name}: there is no function causes(roles, ranges, sensors).{close} Add it.")
         return None
     return family  # type: ignore[no-any-return]

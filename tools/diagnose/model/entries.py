@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....scenarios.measured.table import PLACES, Campaign
+from ....scenarios.nuisances import Nuisance
 
 #: Scatter of a dwell as logged, as a share of the stated one.
 DWELL = 0.02
@@ -71,6 +72,18 @@ class Entries:
         step = np.concatenate([np.full(n, k), np.tile(np.arange(k), len(logged))])
         share = np.array([*PLACES[:k], 1.0])[step]
         return Entries(kind, sensor, row, at, measured, repeat, place_row, step, share)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Readings (m,), by nuisances and parameters of causes (m, d), by the true values of the given sensors' readings.
+
+    `local` (m, given, H): by the reading of each given sensor in each row of the same test.
+    """
+
+    shown: np.ndarray
+    by: np.ndarray
+    local: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -136,3 +149,49 @@ def summed(terms: Sequence[Term], scales: np.ndarray, m: int) -> np.ndarray:
         if t.covariance is not None:
             found += factor**2 * t.covariance
     return np.asarray(found)
+
+
+class Measured:
+    """A campaign as arrays: the measured vector, and what is known of the rows.
+
+    Args:
+        campaign: its readings
+        nuisances: what may differ from the rig file
+    """
+
+    def __init__(self, campaign: Campaign, nuisances: Sequence[Nuisance]) -> None:
+        self.campaign, self.nuisances = campaign, tuple(nuisances)
+        counts = np.bincount(campaign.test)
+        self.height = int(counts.max())
+        starts = np.searchsorted(campaign.test, np.arange(campaign.n_tests))
+        self.half = np.arange(campaign.n) - starts[campaign.test]
+        #: Which row of the campaign each (test, half) is; the last of the test where it has fewer.
+        self.rows = starts[:, None] + np.minimum(np.arange(self.height), counts[:, None] - 1)
+        self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
+        self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
+        self.given, self.read = campaign.given, campaign.read
+        self.entries = Entries.of(campaign)
+        #: Channel and row of each of the m entries, and what was measured.
+        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
+        self.features = self._features()
+
+    @property
+    def m(self) -> int:
+        """Number of entries."""
+        return len(self.measured)
+
+    def _features(self) -> np.ndarray:
+        """Of the rows, in the order of `FEATURES`."""
+        c = self.campaign
+        humidity = np.nan_to_num(c.humidity, nan=0.5)[c.test]
+        oil = [s.name for s in c.sensors if s.kind == "oil_temp"]
+        room = [s.name for s in c.sensors if s.kind == "ambient"]
+        rise = self.sensors[oil[0]] - self.sensors[room[0]] if oil and room else np.full(c.n, 30.0)
+        dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
+        return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """A column whose missing values stand at the mean of the others."""
+    known = values[np.isfinite(values)]
+    return np.where(np.isfinite(values), values, known.mean() if len(known) else 0.0)

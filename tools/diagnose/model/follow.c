@@ -18,8 +18,8 @@ typedef struct {
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
 } Logs;
 
-/* (n), (n, k), (n, k, k); the others (n, L, shown); those that are not wanted are none. */
-typedef struct { double *likelihood, *slope, *curvature, *error, *variance, *shown; } Told;
+/* (n, k), (n, k, k); the others (n, L, shown); those that are not wanted are none. */
+typedef struct { double *slope, *curvature, *error, *variance, *shown; } Told;
 
 #define LOG_GAMMA 0.29289321881345247560
 /* Newton's corrections at most, the last of them over the nominals, the longest one; a shorter one from some on, as a
@@ -37,7 +37,7 @@ typedef struct {
   lanes *y[2], *d[2], *by[2];               /* readings, and derivatives of unknowns and of readings of both stages */
   lanes *own, *S, *S_new, *P, *AP, *CP, *cross, *gain, *V, *e, *e_V, *variance;
   whole *pivot_V;
-  lanes likelihood, *slope, *curvature;
+  lanes *slope, *curvature;
 } Follow;
 
 /* Solves w = base + h rate(w), and keeps the factors of the last correction. */
@@ -167,13 +167,11 @@ static void log_update(Follow *F) {
 static void log_count(Follow *F, const lanes *by_z, lanes counts) {
   const whole m = F->reads, k = F->logs->k;
   const double tails = *F->logs->tails;
-  lanes distance = lanes_all(0.0), determinant = lanes_all(0.0);
+  lanes distance = lanes_all(0.0);
   memcpy(F->e_V, F->e, m * sizeof *F->e);
   solved(F->V, F->pivot_V, m, F->e_V);
-  for (whole i = 0; i < m; i++)
-    distance += F->e[i] * F->e_V[i], determinant += lanes_log(lanes_fabs(F->V[i * m + i]));
+  for (whole i = 0; i < m; i++) distance += F->e[i] * F->e_V[i];
   const lanes weight = (tails + m) / (tails + distance) * counts;
-  F->likelihood -= lanes_only(counts != 0, 0.5 * determinant + 0.5 * (tails + m) * lanes_log1p(distance / tails));
   for (whole c = 0; c < k; c++) {
     lanes *mirrored = F->own;
     memcpy(mirrored, by_z + c * m, m * sizeof *mirrored);
@@ -284,7 +282,6 @@ static void log_begun(Follow *F, whole from, whole to) {
   memset(F->P, 0, F->nx * F->nx * sizeof(lanes)), memset(F->S, 0, F->nx * D->k * sizeof(lanes));
   for (whole i = 0; i < F->nx; i++) F->P[i * F->nx + i] = lanes_all(D->P0[i]);
   memset(F->slope, 0, D->k * sizeof(lanes)), memset(F->curvature, 0, D->k * D->k * sizeof(lanes));
-  F->likelihood = lanes_all(0.0);
 }
 
 /* The windows from the first to before the second number; 0 where memory runs out. */
@@ -309,7 +306,6 @@ __attribute__((visibility("default"))) int follow(const Plant *plant, const Logs
     }
     for (int l = 0; l < LANES && first + l < to; l++) {
       const whole run = first + l;
-      told->likelihood[run] = F.likelihood[l];
       for (whole i = 0; i < logs->k; i++) told->slope[run * logs->k + i] = F.slope[i][l];
       for (whole i = 0; i < logs->k * logs->k; i++) told->curvature[run * logs->k * logs->k + i] = F.curvature[i][l];
     }

@@ -12,9 +12,9 @@ import numpy as np
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
 from ..library.knobs import Knob
-from .entries import Entries
+from .entries import Entries, Seen
 from .formula import Formula
-from .observe import Observed, Seen
+from .observe import Observed
 from .plant import Plant
 
 #: Information of a direction of the knobs, over that of its prior, below which it is left out.

@@ -37,14 +37,12 @@ class Passed:
     """One pass over windows.
 
     Args:
-        log_likelihood: of each window (N,)
-        slope, curvature: of it, by the knobs (N, k), (N, k, k), the latter positive
+        slope, curvature: of the log likelihood, by the knobs (N, k), (N, k, k), the latter positive
         error: prediction errors (N, L, reads), NaN where nothing counts
         variance: of them (N, L, reads)
         shown: what the model shows (N, L, reads)
     """
 
-    log_likelihood: np.ndarray
     slope: np.ndarray
     curvature: np.ndarray
     error: np.ndarray
@@ -197,7 +195,7 @@ class Filter:
             step=np.array([data.step]),
             tails=np.array([TAILS]),
         )
-        found = {"log_likelihood": np.zeros(n), "slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
+        found = {"slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
         found |= {name: np.full(data.read.shape, np.nan) for name in ("error", "variance", "shown")}
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):

@@ -244,12 +244,6 @@ static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   memcpy(s->on, R->on, sizeof s->on);
 }
 
-/* A long step of Euler's implicit method towards a steady state, which it meets whatever came before. */
-static void towards(Runs *R, lanes h, double end, whole read, int kept) {
-  memcpy(R->base, R->w, R->plant->nx * sizeof *R->base);
-  stage(R, h, end, read, kept);
-}
-
 /* A step of the phase to a share of it, h long in each lane. */
 static void step(Runs *R, lanes h, double begin, double end, whole read, int kept) {
   const Plant *P = R->plant;
@@ -263,7 +257,8 @@ static void step(Runs *R, lanes h, double begin, double end, whole read, int kep
   }
 }
 
-/* All phases of the runs; one of no length is one step without time where it is read, else none. */
+/* All phases of the runs; one of no length is one step without time where it is read, else none. Long steps of Euler's
+   implicit method meet a steady state whatever came before. */
 static void forward(Runs *R, double *y, int kept) {
   const Plant *P = R->plant;
   const Duty *D = R->duty;
@@ -278,8 +273,10 @@ static void forward(Runs *R, double *y, int kept) {
       EACH h[l] = (D->share[k] - begin) * D->length[R->run[l] * D->F + R->phase];
       EACH R->on[l] = R->fine[l] && (h[l] > 0 || D->read[k] >= 0);
       if (!any(R->on)) continue;
-      if (D->steady) towards(R, h, D->share[k], D->read[k], kept && D->read[k] >= 0);
-      else step(R, h, begin, D->share[k], D->read[k], kept);
+      if (D->steady) {
+        memcpy(R->base, R->w, P->nx * sizeof *R->base);
+        stage(R, h, D->share[k], D->read[k], kept && D->read[k] >= 0);
+      } else step(R, h, begin, D->share[k], D->read[k], kept);
       for (whole i = 0; i < P->nw; i++)
         EACH if (R->on[l] && P->thermal[i] != 0 && !(R->w[i][l] < RUNAWAY)) R->on[l] = R->fine[l] = 0;
       if (D->read[k] < 0) continue;
@@ -445,13 +442,17 @@ static lanes *aligned(whole n, void **block) {
   return *block ? (lanes *)(((uintptr_t)*block + sizeof(lanes) - 1) / sizeof(lanes) * sizeof(lanes)) : 0;
 }
 
+/* One row of numbers in each lane, from a row of n on; the last row stands in the lanes behind it. */
+static void across(lanes *own, const double *rows, whole from, whole n, whole width) {
+  EACH for (whole i = 0; i < width; i++) own[i][l] = rows[(from + l < n ? from + l : n - 1) * width + i];
+}
+
 /* Runs from a number on, their parameters at hand. */
 static void begun(Runs *R, whole from, whole to) {
   const Duty *D = R->duty;
   const whole size = D->H * R->plant->np;
   EACH R->run[l] = from + l < to ? from + l : to - 1, R->fine[l] = from + l < to;
-  for (whole s = 0; s < D->S; s++)
-    EACH for (whole i = 0; i < size; i++) R->p[s * size + i][l] = D->p[(s * D->n + R->run[l]) * size + i];
+  for (whole s = 0; s < D->S; s++) across(R->p + s * size, D->p + s * D->n * size, from, to, size);
 }
 
 /* The runs from the first to before the second number; 0 where memory runs out. */
@@ -483,9 +484,4 @@ __attribute__((visibility("default"))) int march(const Plant *plant, const Duty 
   }
   free(block);
   return 1;
-}
-
-/* One row of numbers in each lane, from a row of n on; the last row stands in the lanes behind it. */
-static void across(lanes *own, const double *rows, whole from, whole n, whole width) {
-  EACH for (whole i = 0; i < width; i++) own[i][l] = rows[(from + l < n ? from + l : n - 1) * width + i];
 }

@@ -8,8 +8,7 @@ from itertools import groupby
 import numpy as np
 from scipy.linalg import block_diag
 
-from .entries import DWELL, Term
-from .observe import Observed, Seen
+from .entries import DWELL, Measured, Seen, Term
 
 #: Prior standard deviations of the logarithms of scales: readings of a sensor.
 READING = 0.25
@@ -44,13 +43,13 @@ BEGUN = 3.0
 FADING = (1, 2, 4, 8, 16)
 
 
-def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
+def reading_scatter(o: Measured) -> Iterator[tuple[str, np.ndarray]]:
     """Scatter of each compared sensor from reading to reading: name and variances (m,)."""
     for i, s in enumerate(o.read):
         yield s.name, np.where(o.kind == i, s.repeat_sd**2, 0.0)
 
 
-def input_scatter(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
+def input_scatter(o: Measured, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
     """Scatter of each given sensor, through the model: name and effects of all rows' readings (m, n)."""
     same = o.campaign.test[o.row][:, None] == o.campaign.test[None, :]
     for g, s in enumerate(o.given):
@@ -58,20 +57,20 @@ def input_scatter(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
         yield s.name, s.repeat_sd * effect * same
 
 
-def read_tolerance(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
+def read_tolerance(o: Measured) -> Iterator[tuple[str, np.ndarray]]:
     """Fixed tolerance of each compared sensor: name and effect (m,)."""
     for i, s in enumerate(o.read):
         yield s.name, np.where(o.entries.sensor == i, s.offset_sd, 0.0)
 
 
-def given_tolerance(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
+def given_tolerance(o: Measured, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
     """Fixed tolerance of each given sensor, through the model: name and effect (m,)."""
     for g, s in enumerate(o.given):
         signs = o.signs[s.name][o.rows][o.campaign.test[o.row]]  # m, H
         yield s.name, -s.offset_sd * (seen.local[:, g] * signs).sum(axis=1)
 
 
-def placement_error(o: Observed, seen: Seen) -> np.ndarray:
+def placement_error(o: Measured, seen: Seen) -> np.ndarray:
     """Placement error of every further probe of a body: effects (m, k) of reading partly what surrounds it."""
     columns, known, place = [], set[str](), list(zip(o.row, shares(o), strict=True))
     walls = [i for i, s in enumerate(o.read) if s.kind == "wall_temp"]
@@ -96,7 +95,7 @@ def walk(effect: np.ndarray, test: np.ndarray) -> np.ndarray:
     return np.asarray(effect[:, None] * (test[:, None] >= np.arange(int(test.max()) + 1)))
 
 
-def conditions(o: Observed) -> np.ndarray:
+def conditions(o: Measured) -> np.ndarray:
     """What a smooth remainder depends on, in units of its spread: direction and given sensors but rooms (n, k)."""
     columns = [o.sensors[s.name] for s in o.given if s.kind != "ambient"]
     columns = [c for c in columns if np.ptp(c) > 1e-9 * max(abs(c).max(), 1e-300)]
@@ -106,7 +105,7 @@ def conditions(o: Observed) -> np.ndarray:
     return np.array(own).reshape(len(own), o.campaign.n).T
 
 
-def smooth_features(campaigns: Sequence[Observed], points: int) -> list[tuple[np.ndarray, np.ndarray]]:
+def smooth_features(campaigns: Sequence[Measured], points: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
     and squares (n, k). The last `points` campaigns do not count in where they are zero and one.
     """
@@ -131,7 +130,7 @@ def smooth_features(campaigns: Sequence[Observed], points: int) -> list[tuple[np
     return found
 
 
-def remainder(campaigns: Sequence[Observed], points: int) -> np.ndarray:
+def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
     """Effects (M, k) of what no parameter removes of a rig that is not the model, the same in all its campaigns."""
     blocks = []
     features = smooth_features(campaigns, points)
@@ -148,13 +147,13 @@ def remainder(campaigns: Sequence[Observed], points: int) -> np.ndarray:
     return np.concatenate(blocks)
 
 
-def _remainder_sd(campaigns: Sequence[Observed], name: str) -> float:
+def _remainder_sd(campaigns: Sequence[Measured], name: str) -> float:
     kinds = [(s.kind, np.nanmean(np.abs(o.campaign.values[name]))) for o in campaigns for s in o.read if s.name == name]
     kind, size = kinds[0]
     return REMAINDER["temperature"] if kind.endswith("_temp") else float(REMAINDER["other"] * size)
 
 
-def alike(o: Observed, length: float = 1.3) -> np.ndarray:
+def alike(o: Measured, length: float = 1.3) -> np.ndarray:
     """Correlation (m, m) of what is smooth in the conditions and the running order, for one sensor."""
     features = np.column_stack([conditions(o), 2.0 * o.campaign.progress])[o.row]
     features = np.column_stack([features, length / LENGTH * shares(o)]) if o.campaign.series else features
@@ -182,7 +181,7 @@ def tied(parts: Sequence[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> 
     return found
 
 
-def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, day: int, points: int = 0) -> list[Term]:
+def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, day: int, points: int = 0) -> list[Term]:
     """All terms of some campaigns of one rig with the same instruments, at a linearisation.
 
     Args:
@@ -223,7 +222,7 @@ def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, da
     return found
 
 
-def _logged(campaigns: Sequence[Observed]) -> Iterator[Term]:
+def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
     """Terms of logged courses."""
     sizes = [o.m for o in campaigns]
     for name, made in (("courses", smoothed), ("model of courses", model_error)):
@@ -232,7 +231,7 @@ def _logged(campaigns: Sequence[Observed]) -> Iterator[Term]:
     yield Term("dwells as logged", variance=np.concatenate([dwells(o) for o in campaigns]))
 
 
-def laws(campaigns: Sequence[Observed], seen: Sequence[Seen], points: int) -> np.ndarray:
+def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], points: int) -> np.ndarray:
     """Effects (M, k) of losses and heat paths that follow the point a little otherwise than their laws say.
 
     With a healthy campaign of the same rig the remainder says it.
@@ -244,7 +243,7 @@ def laws(campaigns: Sequence[Observed], seen: Sequence[Seen], points: int) -> np
     return np.concatenate(blocks)
 
 
-def _fillings(o: Observed, seen: Seen) -> Iterator[np.ndarray]:
+def _fillings(o: Measured, seen: Seen) -> Iterator[np.ndarray]:
     """Effects (m, fillings) of what another filling or mounting changes."""
     labels = np.unique(o.campaign.mounting, return_inverse=True)[1]
     if labels.max() == 0:
@@ -254,24 +253,24 @@ def _fillings(o: Observed, seen: Seen) -> Iterator[np.ndarray]:
             yield REFILLED * per_group(seen.by[:, k], labels[o.campaign.test[o.row]])
 
 
-def _oils(o: Observed, seen: Seen, names: np.ndarray) -> np.ndarray:
+def _oils(o: Measured, seen: Seen, names: np.ndarray) -> np.ndarray:
     """Effects (m, k) of what each oil makes of the losses beside its viscosity, the same in all campaigns."""
     same = np.array(o.campaign.oil)[o.campaign.test[o.row]][:, None] == names
     losses = seen.by[:, [k for k, nuisance in enumerate(o.nuisances) if nuisance.by_oil]]
     return np.asarray((losses[:, :, None] * same[:, None, :]).reshape(o.m, -1))
 
 
-def along(o: Observed) -> np.ndarray:
+def along(o: Measured) -> np.ndarray:
     """Which entries lie along logged courses (m,)."""
     return np.asarray((o.kind >= len(o.read)) & (o.entries.sensor >= 0))
 
 
-def shares(o: Observed) -> np.ndarray:
+def shares(o: Measured) -> np.ndarray:
     """Share of its dwell at which each entry was read (m,)."""
     return np.asarray(o.entries.share[o.entries.at])
 
 
-def smoothed(o: Observed) -> np.ndarray:
+def smoothed(o: Measured) -> np.ndarray:
     """Scatter of the smooth curves through all samples (m, m)."""
     found = np.zeros((o.m, o.m))
     place: dict[tuple[str, int], list[int]] = {}
@@ -284,26 +283,26 @@ def smoothed(o: Observed) -> np.ndarray:
     return found
 
 
-def model_error(o: Observed) -> np.ndarray:
+def model_error(o: Measured) -> np.ndarray:
     """What the model leaves of each course, smooth along it (m, m)."""
     mine, share = along(o), shares(o)
     same = (o.kind[:, None] == o.kind) & (o.row[:, None] == o.row) & np.outer(mine, mine)
     return np.asarray(same * LEFT**2 * np.exp(-0.5 * ((share[:, None] - share) / LENGTH) ** 2))
 
 
-def start_error(o: Observed) -> np.ndarray:
+def start_error(o: Measured) -> np.ndarray:
     """Effects (m, rows) of dwells that begin at another temperature than the room's reading tells."""
     room = [s.repeat_sd for s in o.given if s.kind == "ambient"]
     fades = along(o) * np.exp(-BEGUN * shares(o)) * (room[0] if room else 0.0)
     return np.asarray(fades[:, None] * (o.row[:, None] == np.unique(o.row[along(o)])))
 
 
-def dwells(o: Observed) -> np.ndarray:
+def dwells(o: Measured) -> np.ndarray:
     """Variance (m,) of dwells as logged."""
     return np.where(o.entries.sensor < 0, DWELL**2, 0.0)
 
 
-def fading(o: Observed, linear: np.ndarray) -> np.ndarray:
+def fading(o: Measured, linear: np.ndarray) -> np.ndarray:
     """Features (m, k) of a remainder that fades along courses, first dwells and later ones apart.
 
     Args:

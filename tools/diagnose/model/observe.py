@@ -3,36 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
-from .duty import Phases, duty
-from .entries import Entries
+from .entries import Measured, Seen
 from .formula import Formula
-from .march import Marched, march
+from .march import Marched, Phases, duty, march
 from .plant import Plant
-from .slopes import Slope, same, total
 
+#: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
+Slope = dict[int, np.ndarray]
 #: Part -> path -> values of each row (n,).
 _Changes = dict[str, dict[str, np.ndarray]]
 
 
-@dataclass(frozen=True)
-class Seen:
-    """Readings (m,), by nuisances and parameters of causes (m, d), by the true values of the given sensors' readings.
-
-    `local` (m, given, H): by the reading of each given sensor in each row of the same test.
-    """
-
-    shown: np.ndarray
-    by: np.ndarray
-    local: np.ndarray
+def same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    """Whether both change the same to the same."""
+    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
 
 
-class Observed:
+def total(terms: Sequence[tuple[np.ndarray | float, Slope]]) -> Slope:
+    """Slopes, each times its weight."""
+    found: Slope = {}
+    for weight, slope in terms:
+        for i, own in slope.items():
+            found[i] = found[i] + weight * own if i in found else weight * own
+    return found
+
+
+class Observed(Measured):
     """One campaign on a compiled rig.
 
     Args:
@@ -51,21 +53,10 @@ class Observed:
         oils: Mapping[str, Mapping[str, float]],
         point: Mapping[str, float],
     ) -> None:
-        self.plant, self.campaign, self.nuisances = plant, campaign, tuple(nuisances)
-        self.height = int(np.bincount(campaign.test).max())
-        starts = np.searchsorted(campaign.test, np.arange(campaign.n_tests))
-        self.half = np.arange(campaign.n) - starts[campaign.test]
-        #: Which row of the campaign each (test, half) is; the last of the test where it has fewer.
-        counts = np.bincount(campaign.test)
-        self.rows = starts[:, None] + np.minimum(np.arange(self.height), counts[:, None] - 1)
-        self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
-        self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
-        self.given, self.read = campaign.given, campaign.read
+        super().__init__(campaign, nuisances)
+        self.plant = plant
         self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
-        self.entries = Entries.of(campaign)
-        #: Channel and row of each of the m entries, and what was measured.
-        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
         self.p = np.tile(plant.p, (campaign.n, 1))
         for k, oil in enumerate(campaign.oil):
             for path, value in oils.get(oil, {}).items():
@@ -78,7 +69,6 @@ class Observed:
         room = np.array([s.kind == "ambient" for s in self.given])
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
-        self.features = self._features()
         self._phases = duty(campaign, self.rows, self.starts)
         at = self.entries
         #: Of each place that is read: its test, and its number among the reads of a run.
@@ -86,21 +76,6 @@ class Observed:
         self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
         #: Which reads of a run lie along logged courses.
         self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
-
-    @property
-    def m(self) -> int:
-        """Number of entries."""
-        return len(self.measured)
-
-    def _features(self) -> np.ndarray:
-        """Of the rows, in the order of `FEATURES`."""
-        c = self.campaign
-        humidity = np.nan_to_num(c.humidity, nan=0.5)[c.test]
-        oil = [s.name for s in c.sensors if s.kind == "oil_temp"]
-        room = [s.name for s in c.sensors if s.kind == "ambient"]
-        rise = self.sensors[oil[0]] - self.sensors[room[0]] if oil and room else np.full(c.n, 30.0)
-        dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
-        return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
 
     def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""
@@ -381,9 +356,3 @@ class _Look:
 def _none(t: np.ndarray) -> np.ndarray:
     """The parameters of a form at size zero."""
     return np.concatenate([[0.0], t[1:]])
-
-
-def _filled(values: np.ndarray) -> np.ndarray:
-    """A column whose missing values stand at the mean of the others."""
-    known = values[np.isfinite(values)]
-    return np.where(np.isfinite(values), values, known.mean() if len(known) else 0.0)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....model.core.declare import Output, Parameter, list_declared
+from ....model.core.declare import Output, list_declared
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
@@ -22,7 +22,8 @@ from ....scenarios.write import DIAGNOSED, rig_text
 from ..answer.estimate import posterior
 from ..answer.findings import Calibrated
 from ..infer.found import Found, Hypothesis
-from ..library.cause import Cause, Form, Row, Size, Theta, Values
+from ..library.cause import Form, Row, Theta
+from ..library.check import parameters
 from ..setting import Setting
 from . import phrases
 from .phrases import name_of
@@ -41,7 +42,8 @@ LITTLE = 1e-5
 class Applied:
     """A cause in the form and with the size and shapes that were found."""
 
-    cause: Cause
+    id: str
+    doc: str
     form: Form
     theta: Theta
 
@@ -50,7 +52,7 @@ class Applied:
         """Cause, form and parameters."""
         form = f" ({self.form.name})" if self.form.name else ""
         values = ", ".join(f"{name} = {phrases.number(float(v), 4)}" for name, v in self.theta.items())
-        return f"{self.cause.id}{form}, {values}"
+        return f"{self.id}{form}, {values}"
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,7 @@ def extended(
     for one in (*also, *applied):
         rig, left = _added(rig, one, data, oils)
         notes += left
-    causes = " and ".join(f"{name_of(a.cause.id)} ({a.cause.id})" for a in applied) or "calibrated, no cause added"
+    causes = " and ".join(f"{name_of(a.id)} ({a.id})" for a in applied) or "calibrated, no cause added"
     doc = f"{rig.doc.rstrip('.')}; as diagnosed from {data}: {causes}."
     head = [f"Written by `gearheat diagnose` from {data}: {causes}.", *notes]
     clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), entries={})
@@ -146,12 +148,9 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
     with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
-    declarations = {p.name: list_declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
-    base = {f"{name}.{key}": d.default for name, own in declarations.items() for key, d in own.items()}
-    base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
-    changed = None if form.spread else _changed(form, one.theta, base)
+    changed = None if form.spread else _changed(form, one.theta, parameters(with_parts))
     if not changed:
-        return scenario, [f"{outside} {one.cause.doc if form.values is None else 'It differs from test to test.'}"]
+        return scenario, [f"{outside} {one.doc if form.values is None else 'It differs from test to test.'}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
     parts = [replace(p, name=names[p.name]) for p in form.parts]
     nets = [tuple(_renamed(port, names) for port in net) for net in form.connections]
@@ -162,7 +161,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     oil = {path.rpartition(".")[0] for path in changed} & {n for n, own in scenario.entries.items() if "oil" in own}
     notes = [f"{one.told}: the values below are of the rig's own oil; others change alike."] if oil and oils > 1 else []
-    source = f"inferred: for the rig's own oil, diagnosis of {data}" if notes else f"{DIAGNOSED} {data}, {one.cause.id}"
+    source = f"inferred: for the rig's own oil, diagnosis of {data}" if notes else f"{DIAGNOSED} {data}, {one.id}"
     if form.shown is not None or form.truth is not None or form.pace is not None:
         notes.append(f"{outside} Its part in the machine is below.")
     spec = scenario.spec.with_parts(parts, nets, EXTRA_PARTS)
@@ -244,7 +243,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
         z, acting = h.fit.split(found.problem, x)
         told = values(found, z)
         added = [_calibration(n, told) for n in found.problem.data.nuisances if n.parts]
-        causes = [Applied(a.formula.cause, a.formula.form, a.formula.theta(a.t)) for a in acting]
+        causes = [Applied(a.id, a.formula.cause.doc, a.formula.form, a.formula.theta(a.t)) for a in acting]
         return extended(scenario, told, causes, data.name, len(oils), added)
 
     x = h.fit.look.x
@@ -255,12 +254,5 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
 def _calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:
     """What calibration adds to a rig, as if it were a cause."""
     own = {path: told[path] for path in nuisance.paths}
-
-    def held(theta: Theta, row: Row) -> Values:
-        return own
-
-    form = Form(parts=nuisance.parts, connections=nuisance.connections, values=held)
-    entry = Cause(
-        f"calibration of {nuisance.name}", "Calibration adds it.", Size("factor", "1", "", 1.0, 0.0, 1.0), (form,)
-    )
-    return Applied(entry, form, {})
+    form = Form(parts=nuisance.parts, connections=nuisance.connections, values=lambda theta, row: own)
+    return Applied(f"calibration of {nuisance.name}", "Calibration adds it.", form, {})

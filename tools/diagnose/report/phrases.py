@@ -84,14 +84,14 @@ def sigma(distance: float | None) -> str:
     return "" if distance is None else f"{distance:.1f}"
 
 
-def p_value(p: float | None, name: str = "p") -> str:
+def p_value(p: float | None) -> str:
     """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6; empty where there is none."""
     if p is None:
         return ""
     if p <= LEAST_P:
-        return f"{name} < 1e-6"
+        return "p < 1e-6"
     digits = 2 if p < 0.99 else 4
-    return f"{name} = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"{name} = {min(p, 0.9999):.{digits}g}"
+    return f"p = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"p = {min(p, 0.9999):.{digits}g}"
 
 
 def chance(p: float) -> str:

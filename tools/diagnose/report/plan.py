@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from matplotlib.figure import Figure
 
 from ....model.core.faults import name_all
-from ...show.drawing import COLOURS, empty, legend, png, svg
+from ...show.drawing import COLOURS, empty, legend
 from ..answer.plan import Outlook, Plan
 from . import phrases
 from .phrases import name_of, names_of
@@ -96,13 +96,8 @@ def _listed(plan: Plan, everything: bool = False) -> list[tuple[str, str, Outloo
     return [*now, *single, *several]
 
 
-def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
-    """Bars of the distances now and behind each experiment.
-
-    Args:
-        plan: the plan
-        form: of the file
-    """
+def picture(plan: Plan) -> Figure:
+    """Bars of the distances now and behind each experiment."""
     rows = _listed(plan)
     pairs: list[tuple[str, str] | None] = [p.causes for p in plan.pairs if p.one_answer is None]
     if len(pairs) > PAIRS:
@@ -121,4 +116,4 @@ def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
     panel.set(xlim=(0, END), xlabel="distance [standard deviations]")
     panel.grid(False, axis="y")
     legend(figure, panel)
-    return svg(figure).encode() if form == "svg" else png(figure)
+    return figure

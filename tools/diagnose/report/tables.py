@@ -81,14 +81,7 @@ def quality(findings: Findings) -> list[Table]:
         for v in q.variance
     ]
     repeats = [
-        (
-            p.condition,
-            p.channel,
-            str(r.test),
-            number(r.order),
-            with_unit(r.sum, p.unit),
-            with_unit(r.difference, p.unit),
-        )
+        (p.condition, p.channel, str(r.test), number(r.order), *(with_unit(v, p.unit) for v in (r.sum, r.difference)))
         for p in q.repeated
         for r in p.repeats
     ]
@@ -108,9 +101,7 @@ def quality(findings: Findings) -> list[Table]:
 def causes(findings: Findings) -> list[Table]:
     """Causes with their sizes, hypotheses, and what each channel says on its own."""
     listed = list_causes(findings)
-    ranked = [
-        (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), p_value(c.q, "q"), c.id) for c in listed
-    ]
+    ranked = [(percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), c.id) for c in listed]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
     joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
     together = [
@@ -125,7 +116,7 @@ def causes(findings: Findings) -> list[Table]:
         leading = ", ".join(f"{name_of(s.id)} {percent(s.probability, s.mc_error)}" for s in v.causes[:NAMED])
         by_channel.append((v.channel, v.asks, p_value(v.p), percent(v.nothing), leading))
     return [
-        Table("Causes", ("probability", "cause", "size (95 %)", "where", "other half", "id"), ranked),
+        Table("Causes", ("probability", "cause", "size (95 %)", "where", "id"), ranked),
         Table("Sizes and shapes", ("cause", "parameter", "value (95 %)", "meaning"), sizes),
         Table("Hypotheses", ("probability", "causes"), together),
         Table("What each channel says on its own", ("channel", "asks", "p", "nothing wrong", "causes"), by_channel),
