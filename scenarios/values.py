@@ -37,7 +37,7 @@ class PartValues:
     """What the table of one part gives: SI values and choices, where each is from, and all that is wrong.
 
     `uncertainties` holds the standard uncertainty of the values that state one, in the unit of the value; `units` the
-    unit in which a value is written, for those that have one.
+    unit in which a value is written, for those that have one, `made` the part, so that it is made once.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
@@ -46,6 +46,7 @@ class PartValues:
     units: dict[str, str] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
     problems: Problems = field(default_factory=Problems)
+    made: list[Component] = field(default_factory=list)
 
 
 def settable(cls: type[Component]) -> dict[str, Declaration]:
@@ -284,7 +285,7 @@ class _PartReader:
     def _check_component(self, complete: bool, failed: Iterable[str]) -> None:
         """What the part itself finds: missing values, unknown choices; without what follows from other problems."""
         try:
-            make(self.cls, self.name, self.result.values)
+            self.result.made.append(make(self.cls, self.name, self.result.values))
         except GearheatError as error:
             excused = tuple(f"{key} is missing" for key in (*failed, *(guess(key, self.meanings) for key in failed)))
             for problem in error.problems:

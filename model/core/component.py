@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from dataclasses import dataclass
+from functools import cached_property
 from math import inf, nextafter
 from typing import Any, ClassVar
+from weakref import WeakValueDictionary
 
 import casadi as ca
 import numpy as np
@@ -64,9 +65,6 @@ class Balance(Equation):
 Faults = Mapping[str, Mapping[str, float]]
 #: Of a part that is what it is: nothing of it can fail.
 SOUND: Faults = {}
-
-#: Parts kept, those of some rigs.
-KEPT = 500
 
 #: A relation and the expression of the value that tells whether it holds.
 Related = tuple[Relation, Any]
@@ -319,17 +317,14 @@ class _Wanted:
 
     kind: type[Component]
     name: str
-    values: Mapping[str, Any] = field(compare=False)
-    text: str
+    values: str
 
 
-@lru_cache(KEPT)
-def _made(wanted: _Wanted) -> Component:
-    return wanted.kind(wanted.name, **wanted.values)
+_MADE: WeakValueDictionary[_Wanted, Component] = WeakValueDictionary()
 
 
 def make(kind: type[Component], name: str, values: Mapping[str, Any]) -> Component:
-    """A part, made once of equal values: whoever reads, changes or assembles a rig asks for most of its parts again.
+    """A part; where an equal one is in use, that one: who reads, changes or assembles a rig asks for most parts again.
 
     Args:
         kind: its type
@@ -339,4 +334,7 @@ def make(kind: type[Component], name: str, values: Mapping[str, Any]) -> Compone
     Raises:
         ScenarioError: all missing, unknown and out-of-range values at once
     """
-    return _made(_Wanted(kind, name, values, repr(values)))
+    wanted = _Wanted(kind, name, repr(values))
+    if (part := _MADE.get(wanted)) is None:
+        part = _MADE[wanted] = kind(name, **values)
+    return part

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -33,6 +34,17 @@ class Assembly:
         """All ports by path, in the order of the parts."""
         return {port.name: port for part in self.parts for port in part.ports.values()}
 
+    @cached_property
+    def nets(self) -> list[list[Port]]:
+        """The groups of ports that meet. Raises StructureError as `nets`."""
+        ports = self.ports()
+        if problems := _problems(self, ports):
+            raise StructureError(problems)
+        found = _merge_nets(self, ports)
+        if problems := _open_ports(self.name, self.parts, found) or _clashes(self, found):
+            raise StructureError(problems)
+        return found
+
 
 def nets(assembly: Assembly) -> list[list[Port]]:
     """The groups of ports that meet, single ports included, in the order of the parts.
@@ -44,14 +56,7 @@ def nets(assembly: Assembly) -> list[list[Port]]:
         StructureError: all connections to ports that do not exist or of different types, and doubled part names; or
             else all ports and parts that have to be connected and are not
     """
-    ports = assembly.ports()
-    problems = _problems(assembly, ports)
-    if problems:
-        raise StructureError(problems)
-    found = _merge_nets(assembly, ports)
-    if problems := _open_ports(assembly.name, assembly.parts, found) or _clashes(assembly, found):
-        raise StructureError(problems)
-    return found
+    return assembly.nets
 
 
 def _clashes(assembly: Assembly, nets: Sequence[Sequence[Port]]) -> list[str]:

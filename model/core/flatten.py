@@ -146,7 +146,7 @@ def _flat_model(
         "throughput": sum((ca.fabs(power) for power in supplies), ca.SX(0)),
         "stored": sum(aliased([stored for _, stored in energies]), ca.SX(0)),
         "checked": column(aliased([value for _, value in checks])),
-        "imbalance": column(aliased([_imbalance(part) for part in parts])),
+        "imbalance": column(aliased(_imbalances(parts))),
     }
     together = inline(ca.vertcat(*expressions.values()), solution)
     ends = [0, *accumulate(e.numel() for e in expressions.values())]
@@ -204,10 +204,12 @@ def _output(part: Component, key: str, declaration: Declaration, joined: Mapping
     return replace(quantity, doc=f"{quantity.doc}; {joined[path]}") if path in joined else quantity
 
 
-def _imbalance(part: Component) -> Any:
-    """Power that enters a part through its ports and from outside, less what its states gain [W]."""
-    taken = sum((port.power() for port in part.ports.values()), sum(part.supplied_power(), ca.SX(0)))
-    if not part.states:
-        return taken
-    states = column([part.symbols[k] for k in part.states])
-    return taken - ca.jtimes(ca.SX(part.stored_energy()), states, column(list(part.derivatives.values())))
+def _imbalances(parts: Sequence[Component]) -> list[Any]:
+    """Power that enters each part through its ports and from outside, less what its states gain [W]."""
+    storing = {part.name: part for part in parts if part.states}
+    stored = column([part.stored_energy() for part in storing.values()])
+    states = column([part.symbols[k] for part in storing.values() for k in part.states])
+    rates = column([part.derivatives[k] for part in storing.values() for k in part.states])
+    gained = dict(zip(storing, ca.densify(ca.jtimes(stored, states, rates)).nonzeros(), strict=True))
+    entering = [sum((p.power() for p in part.ports.values()), sum(part.supplied_power(), ca.SX(0))) for part in parts]
+    return [power - gained.get(part.name, 0.0) for part, power in zip(parts, entering, strict=True)]

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from source_trees import modules, name_of, nodes_of, text_of
+from source_trees import ROOT, modules, name_of, nodes_of, text_of
 
 
 def functions(path: Path) -> Iterator[ast.FunctionDef]:
@@ -41,6 +41,11 @@ def test_no_function_is_longer_than_60_lines() -> None:
         for function in functions(path)
         if body_lines(function) >= 60
     ]
+
+
+def test_the_diagnosis_has_at_most_13300_lines_of_python_and_c() -> None:
+    sources = [*modules("tools/diagnose"), *(ROOT / "tools/diagnose").rglob("*.c")]
+    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in sources) <= 13300
 
 
 def test_no_function_of_the_diagnosis_takes_more_than_six_parameters() -> None:

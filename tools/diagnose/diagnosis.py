@@ -123,7 +123,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             p_adequacy=decision.p_adequacy,
             draws=len(found.drawn),
         ),
-        data_quality=check_data(made, found, leader),
+        data_quality=check_data(found, leader),
         impact=impacts(found.problem, leader, made.nominal.ratios),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
@@ -137,7 +137,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         pictures=pictures.pictures(found, leader, rows.quantities),
         calibrated=calibrated(made, found, leader),
         extended_rig=rig_file(made, found, leader),
-        predictions=predict(made, found, inputs.points) if inputs.points else (),
+        predictions=predict(found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in {**blind, **inputs.invisible}.items()),
         warnings=inputs.warnings,
     )
@@ -184,5 +184,7 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = simulate_design(made, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value))
+    found = simulate_design(
+        problem, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value)
+    )
     return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

@@ -141,7 +141,7 @@ def judged(
     formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
     scenario = inputs.scenario
-    made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, problem.data.plant, problem, {})
+    made = Setting(scenario, scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
     found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)

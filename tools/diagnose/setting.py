@@ -44,12 +44,9 @@ class Setting:
 
     scenario: Scenario
     spec: Spec
-    card: Card
     causes: tuple[Cause, ...]
     formulas: tuple[Formula, ...]
-    plant: Plant
     problem: Problem
-    oils: dict[str, dict[str, float]]
 
     @cached_property
     def nominal(self) -> Nominal:
@@ -101,7 +98,7 @@ def setting(
     plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
-    return Setting(scenario, spec, card, causes, formulas, plant, problem, oils)
+    return Setting(scenario, spec, causes, formulas, problem)
 
 
 def ranges_of(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -16,6 +16,10 @@ from .sweep_rows import Block, Job
 PATIENCE = 20.0
 #: Between two looks at which workers there are [s].
 LOOK = 1.0
+#: Blocks of a task at most: a task costs 20 ms.
+TOGETHER = 8
+#: Tasks that each thread of a worker gets at least, where there are as many blocks.
+SHARES = 4
 
 
 def run_on_cluster(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
@@ -29,17 +33,18 @@ def run_on_cluster(job: Job, blocks: Iterable[Block], address: str) -> Iterator[
     client = _client(address)
     try:
         shared = client.submit(_same, job, pure=False)  # what is computed comes back with another worker
-        limit = 2 * sum(client.nthreads().values())
-        numbers: dict[Any, int] = {}
+        threads, waiting = sum(client.nthreads().values()), list(blocks)
+        size = min(max(len(waiting) // (SHARES * threads), 1), TOGETHER)
+        numbers: dict[Any, Sequence[int]] = {}
         ended = _Ended(client, address)
-        for number, values in blocks:
-            if len(numbers) >= limit:
-                yield ended.block(numbers)
-            future = client.submit(_rows, shared, values, pure=False)
-            numbers[future.key] = number
+        for group in (waiting[first : first + size] for first in range(0, len(waiting), size)):
+            if len(numbers) >= 2 * threads:
+                yield from ended.blocks(numbers)
+            future = client.submit(_rows, shared, [values for _, values in group], pure=False)
+            numbers[future.key] = [number for number, _ in group]
             future.add_done_callback(ended.put)
         while numbers:
-            yield ended.block(numbers)
+            yield from ended.blocks(numbers)
     except (GeneratorExit, KeyboardInterrupt, DataError):
         raise
     except Exception as error:  # whatever a worker or the network raises
@@ -63,15 +68,15 @@ class _Ended:
         self._queue: SimpleQueue[Any] = SimpleQueue()
         self.put = self._queue.put
 
-    def block(self, numbers: dict[Any, int]) -> Block:
-        """The next finished block, of those that are under way by the keys of their tasks."""
+    def blocks(self, numbers: dict[Any, Sequence[int]]) -> Iterable[Block]:
+        """The next finished blocks, of those that are under way by the keys of their tasks."""
         while True:
             try:
                 future = self._queue.get(timeout=LOOK)
             except Empty:
                 self._look()
                 continue
-            return numbers.pop(future.key), future.result()
+            return zip(numbers.pop(future.key), future.result(), strict=True)
 
     def _look(self) -> None:
         if self._client.status != "running":
@@ -88,8 +93,8 @@ def _same(job: Job) -> Job:
     return job
 
 
-def _rows(job: Job, values: np.ndarray) -> np.ndarray:
-    return job.rows(values, threads=1)
+def _rows(job: Job, blocks: Sequence[np.ndarray]) -> list[np.ndarray]:
+    return [job.rows(values, threads=1) for values in blocks]
 
 
 def _client(address: str) -> Any:

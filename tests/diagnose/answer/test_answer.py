@@ -19,7 +19,6 @@ from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import weigh
 from gearheat.tools.diagnose.model.noise import terms
-from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
@@ -78,13 +77,12 @@ def test_other_data_change_the_odds_by_what_they_say(wrong: tuple[Setting, Found
 
 
 def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[Setting, Found]) -> None:
-    made, sound = clean[0], clean[1].problem
+    sound = clean[1].problem
     oil, row = next(s for s in sound.data.read if s.kind == "oil_temp"), 5
     values = {**sound.data.campaign.values}
     values[oil.name] = values[oil.name] + 20 * oil.repeat_sd * (np.arange(sound.data.campaign.n) == row)
     data = replace(sound.data.campaign, values=values)
-    point = made.scenario.operating_point
-    problem = Problem([Observed(made.plant, data, sound.data.nuisances, made.oils, point)], sound.day_sd)
+    problem = Problem([sound.data.another(data)], sound.day_sd)
     bad = Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.kind == 0))[0]))
     found = weigh(problem, clean[1].formulas)
     assert found.problem.aside == {bad}
@@ -172,9 +170,9 @@ def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> No
 
 
 def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
-    setting, found = clean
+    _, found = clean
     leader = decide(found).leader
-    for term in scatters(setting, found, leader):
+    for term in scatters(found, leader):
         assert term.ci95[0] < term.card < term.ci95[1], term
     assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())
 
@@ -191,9 +189,9 @@ def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
 
 
 def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting, Found]) -> None:
-    setting, found = wrong
+    _, found = wrong
     campaign = found.problem.data.campaign
-    nominal, extended = simulate(setting, found, campaign)
+    nominal, extended = simulate(found, campaign)
     i = next(i for i, s in enumerate(found.problem.data.read) if s.kind == "oil_temp")
     measured = campaign.values[found.problem.data.read[i].name]
     left = [float(np.sqrt(np.mean((table[i] - measured) ** 2))) for table in (nominal, extended)]
@@ -207,7 +205,7 @@ def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Set
     campaign = problem.data.campaign
     speed = next(s.name for s in campaign.given if s.kind == "speed")
     fast = replace(campaign, values={**campaign.values, speed: 1.2 * campaign.values[speed]})
-    points = Observed(clean[0].plant, fast, problem.data.nuisances, clean[0].oils, clean[0].scenario.operating_point)
+    points = problem.data.another(fast)
     seen = points.at(np.append(look.z, 0.0), [])
     joint = terms([*problem.campaigns, points], [*look.seen, seen], problem.day_sd, problem.nz, points=1)
     assert [t.name for t in joint] == list(alone)
@@ -218,7 +216,7 @@ def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Set
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
     tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
-    made = extend_design(setting, found, CAUSES, tried)
+    made = extend_design(found, CAUSES, tried)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
     for e in made.experiments:
@@ -260,7 +258,7 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
     assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
     assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
     assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
-    made = extend_design(setting, wrong[1], CAUSES, list_experiments(campaign, setting.nominal.value))
+    made = extend_design(wrong[1], CAUSES, list_experiments(campaign, setting.nominal.value))
     weights = dict.fromkeys(CAUSES, 0.25)
     assert all(r.separation_after >= r.separation_before + 0.1 for r in rank(made, weights))
 

@@ -47,7 +47,7 @@ def logged(c: Campaign) -> Campaign:
 
 
 def observed(s: Setting, campaign: Campaign) -> Observed:
-    return Observed(s.plant, campaign, s.problem.data.nuisances, s.oils, s.scenario.operating_point)
+    return s.problem.data.another(campaign)
 
 
 def formula(s: Setting, cause: str, form: str = "") -> Formula:

@@ -138,5 +138,5 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = extend_design(setting, found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
+    made = extend_design(found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
     return tuple(rank(made, weights)[:TRIED])

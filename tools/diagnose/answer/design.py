@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -12,12 +12,11 @@ from scipy.linalg import block_diag
 
 from ..infer.evidence import White
 from ..infer.found import Found
-from ..infer.problem import Acting, Look, Noise
+from ..infer.problem import Acting, Look, Noise, Problem
 from ..infer.screen import limits
 from ..model.entries import Seen
 from ..model.noise import terms
 from ..model.observe import Observed
-from ..setting import Setting
 from . import findings
 from .experiments import Check, Experiment, build_tests
 
@@ -138,7 +137,7 @@ class Design:
 
 
 def simulate_design(
-    setting: Setting,
+    problem: Problem,
     look: Look,
     noise: Noise,
     candidates: Sequence[Acting],
@@ -148,15 +147,14 @@ def simulate_design(
     """A campaign with experiments behind it.
 
     Args:
-        setting: the rig and its campaign
+        problem: the rig and its campaigns
         look: at the rig as calibrated, without a cause
         noise: scatter there
         candidates: forms of the causes
         effects: theirs in the campaign (m, k)
         experiments: to try
     """
-    problem = setting.problem
-    runs = {e.id: r for e in experiments if e.tests and (r := _run(setting, look, candidates, e)) is not None}
+    runs = {e.id: r for e in experiments if e.tests and (r := _run(problem.data, look, candidates, e)) is not None}
     checks = [(e.id, check) for e in experiments for check in e.checks]
     campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
     seen = [*look.seen, *(s for _, s, _ in runs.values())]
@@ -197,18 +195,17 @@ def _with_checks(
 
 
 def _run(
-    setting: Setting, look: Look, candidates: Sequence[Acting], experiment: Experiment
+    data: Observed, look: Look, candidates: Sequence[Acting], experiment: Experiment
 ) -> tuple[Observed, Seen, np.ndarray] | None:
     """The tests of an experiment simulated, with the effects of the causes (m, k); None where the machine cannot."""
-    data, z, point = setting.problem.data, np.append(look.z, 0.0), setting.scenario.operating_point
-    campaign = build_tests(data.campaign, experiment)
-    o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
+    z, campaign = np.append(look.z, 0.0), build_tests(data.campaign, experiment)
+    o = data.another(campaign)
     shown = o.at(z, []).shown
     if not np.isfinite(shown).all():
         return None
     for i, s in enumerate(campaign.read):
         campaign.values[s.name][o.row[o.kind == i]] = shown[o.kind == i]
-    o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
+    o = data.another(campaign)
     o.features[0] = 1.0  # behind the campaign
     seen = o.at(z, [])
     effects = o.tangents(z, [], [(c.formula, c.t) for c in candidates])
@@ -237,12 +234,12 @@ def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.nda
     return found
 
 
-def extend_design(setting: Setting, found: Found, causes: Collection[str], experiments: Sequence[Experiment]) -> Design:
+def extend_design(found: Found, causes: Collection[str], experiments: Sequence[Experiment]) -> Design:
     """The design of a search's data for some causes, with experiments behind it."""
     places = [k for k, c in enumerate(found.first.candidates) if c.id in causes]
     candidates = [found.first.candidates[k] for k in places]
-    made, null = replace(setting, problem=found.problem), found.null
-    return simulate_design(made, null.look, null.noise, candidates, found.first.effects[:, places], experiments)
+    look, noise = found.null.look, found.null.noise
+    return simulate_design(found.problem, look, noise, candidates, found.first.effects[:, places], experiments)
 
 
 def rank(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:

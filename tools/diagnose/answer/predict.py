@@ -13,7 +13,6 @@ from ..infer.found import Found
 from ..infer.problem import Problem
 from ..model.noise import terms
 from ..model.observe import Observed
-from ..setting import Setting
 from . import channels
 from .findings import Prediction
 
@@ -21,18 +20,16 @@ from .findings import Prediction
 COUNTS = 0.03
 
 
-def predict(setting: Setting, found: Found, points: Campaign) -> tuple[Prediction, ...]:
+def predict(found: Found, points: Campaign) -> tuple[Prediction, ...]:
     """What the instruments will show at points, where the machine can be run.
 
     Args:
-        setting: the rig
         found: the search
         points: their conditions
     """
     read, told = found.problem.data.read, []
     tables = [
-        [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)]
-        for table in simulate(setting, found, points)
+        [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)] for table in simulate(found, points)
     ]
     for row in range(points.n):
         both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
@@ -42,15 +39,14 @@ def predict(setting: Setting, found: Found, points: Campaign) -> tuple[Predictio
     return tuple(told)
 
 
-def simulate(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
+def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run.
 
     Args:
-        setting: the rig
         found: the search
         points: conditions
     """
-    o = _observed(setting, found, points)
+    o = _observed(found, points)
     nominal = _predicted(found.problem, found.null, o)
     weights: dict[int, float] = {}
     fits = {id(h.fit.look): h.fit for h in reversed(found.hypotheses)}
@@ -64,14 +60,14 @@ def simulate(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarr
     return nominal, np.where(total > 0, mean, nominal)
 
 
-def _observed(setting: Setting, found: Found, points: Campaign) -> Observed:
+def _observed(found: Found, points: Campaign) -> Observed:
     """The points as a campaign that reads all sensors of the data; causes that follow readings take the nominal's."""
     data = found.problem.data
     order = data.campaign.order  # of the data, in which the points stand from 0 at the first test to 1 at the last
     guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in data.read}
     filled = replace(points, sensors=(*points.given, *data.read), values={**points.values, **guess})
     for _ in range(2):
-        o = Observed(setting.plant, filled, data.nuisances, setting.oils, setting.scenario.operating_point)
+        o = data.another(filled)
         o.features[0] = np.clip((points.order - order.min()) / max(np.ptp(order), 1.0), 0.0, 1.0)[points.test]
         table = _predicted(found.problem, found.null, o)
         known = {

@@ -18,7 +18,6 @@ from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
 from ..infer.problem import Aside, Problem
-from ..setting import Setting
 from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
@@ -36,12 +35,12 @@ QUARTERS = 4
 FAR = 4.0
 
 
-def check_data(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
+def check_data(found: Found, h: Hypothesis) -> DataQuality:
     """Gross readings, values far off, scatter against the card, by a hypothesis."""
     return DataQuality(
         gross=gross_readings(found, h),
-        nuisances=values_off(setting, found, h),
-        variance=scatters(setting, found, h),
+        nuisances=values_off(found, h),
+        variance=scatters(found, h),
         repeated=list_repeats(found.problem.data.campaign),
         adequacy=adequacy(found, h),
     )
@@ -96,9 +95,9 @@ def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
     return found
 
 
-def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
+def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
     """Nuisances beyond `OFF` of their prior, the farthest first."""
-    plant, told = setting.plant, []
+    plant, told = found.problem.data.plant, []
     x, _ = posterior(found.problem, h)
     for nuisance, z in zip(found.problem.data.nuisances, x[: found.problem.nz], strict=False):
         if abs(z) <= OFF:
@@ -116,12 +115,12 @@ def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceO
     return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 
-def scatters(setting: Setting, found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
+def scatters(found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
     """The loose terms of the scatter, as they were found."""
     noise, told = h.fit.noise, []
-    sensors = {f"readings of {s.name}": s for s in setting.problem.data.campaign.sensors}
+    sensors = {f"readings of {s.name}": s for s in found.problem.data.campaign.sensors}
     for term, scale, sd in zip(noise.loose, noise.scales, scale_sds(found, h), strict=True):
-        s, card, ratio = sensors.get(term.name), setting.card.day_cooling_sd, float(np.exp(scale))
+        s, card, ratio = sensors.get(term.name), found.problem.day_sd, float(np.exp(scale))
         if s is not None:
             card = channels.difference(s, s.repeat_sd)
         low, high = (card * float(np.exp(scale + 1.96 * sd * sign)) for sign in (-1.0, 1.0))

@@ -34,7 +34,7 @@ class Knob:
         usual: size of the cause that is usual [unit]
         sd: standard deviation between machines of one type [unit]
         scaled: parameters multiplied by exp(exponent z): path -> exponent
-        shifted: parameters to which z times the factor is added [SI]: path -> factor
+        shifted: parameters to which z is added [SI]
         sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
         gain: see above
     """
@@ -46,7 +46,7 @@ class Knob:
     usual: float = 0.3
     sd: float = 0.3
     scaled: Mapping[str, float] = field(default_factory=dict)
-    shifted: Mapping[str, float] = field(default_factory=dict)
+    shifted: tuple[str, ...] = ()
     sensor: str = ""
     gain: bool = False
 
@@ -106,20 +106,15 @@ def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
     return (*_teeth(roles), *(knob for row in rows for knob in _parts(roles, **row)), *_sensors(sensors))
 
 
-def _factor(name: str, cause: str, doc: str, *paths: str) -> Knob:
-    return Knob(name, cause, doc, scaled=dict.fromkeys(paths, 1.0))
-
-
 def _teeth(roles: Roles) -> Iterator[Knob]:
-    types = roles.spec.types
+    types, mesh = roles.spec.types, "losses.mesh_friction"
     for name in roles.having("teeth"):
+        told = [("friction", mesh, "More or less friction.", roles.scaled(name))]
         if issubclass(types[roles.spec.part(name).type], GreyLoss):
-            yield _factor(
-                f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a"
-            )
-            yield _factor(f"{name}: loss of load", "losses.mesh_friction", "More or less loss with load.", f"{name}.b")
-        else:
-            yield _factor(f"{name}: friction", "losses.mesh_friction", "More or less friction.", *roles.scaled(name))
+            told = [("loss without load", "losses.churning", "More or less loss without load.", (f"{name}.a",))]
+            told.append(("loss of load", mesh, "More or less loss with load.", (f"{name}.b",)))
+        for what, cause, doc, paths in told:
+            yield Knob(f"{name}: {what}", cause, doc, scaled=dict.fromkeys(paths, 1.0))
 
 
 def _parts(
@@ -141,7 +136,7 @@ def _parts(
     else:
         found = roles.failing(cause)
     for name, paths in found.items():
-        moved = {f"{name}.{key}": 1.0 for key in shifted}
+        moved = tuple(f"{name}.{key}" for key in shifted)
         yield Knob(f"{name}: {what}", cause, scaled={} if moved else paths, shifted=moved, **said)
 
 

@@ -26,7 +26,7 @@ Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]
 #: Our own, in the order of the taxonomy.
 FAMILIES: tuple[Callable[[Context], Iterable[Cause]], ...] = (
     losses.causes,
-    thermal.heat_causes,
+    thermal.external_source,
     cooling.causes,
     thermal.causes,
     instruments.causes,

@@ -96,8 +96,8 @@ class Filter:
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 p[:, self.plant.place[path]] *= np.exp(exponent * z[:, j])
-            for path, weight in knob.shifted.items():
-                p[:, self.plant.place[path]] += weight * z[:, j]
+            for path in knob.shifted:
+                p[:, self.plant.place[path]] += z[:, j]
             if knob.sensor in self.given:
                 i = self.given.index(knob.sensor)
                 factor[:, i] *= np.exp(-z[:, j]) if knob.gain else 1.0
@@ -109,8 +109,8 @@ class Filter:
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 dp[:, self.plant.knobs.index(path), j] = exponent * p[:, self.plant.place[path]]
-            for path, weight in knob.shifted.items():
-                dp[:, self.plant.knobs.index(path), j] = weight
+            for path in knob.shifted:
+                dp[:, self.plant.knobs.index(path), j] = 1.0
         return p, dp, factor, shift, offset, by
 
     @property

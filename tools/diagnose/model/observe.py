@@ -54,7 +54,7 @@ class Observed(Measured):
         point: Mapping[str, float],
     ) -> None:
         super().__init__(campaign, nuisances)
-        self.plant = plant
+        self.plant, self.oils, self.point = plant, oils, point
         self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
         self.p = np.tile(plant.p, (campaign.n, 1))
@@ -76,6 +76,10 @@ class Observed(Measured):
         self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
         #: Which reads of a run lie along logged courses.
         self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
+
+    def another(self, campaign: Campaign) -> Observed:
+        """Another campaign on the same rig."""
+        return Observed(self.plant, campaign, self.nuisances, self.oils, self.point)
 
     def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""

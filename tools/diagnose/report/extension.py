@@ -212,12 +212,12 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
         found: the search
         h: the hypothesis of the answer
     """
-    known, told = setting.scenario.settable(), []
+    known, plant, told = setting.scenario.settable(), found.problem.data.plant, []
     nominal, extended = values(found, found.null.look.z), values(found, h.fit.look.z)
     for path, value in nominal.items():
         if path in known:
             unit = known[path].unit
-            file = float(setting.plant.p[setting.plant.place[path]])
+            file = float(plant.p[plant.place[path]])
             shown = [float(from_si(v, unit)) for v in (file, value, extended[path])]
             causes = shown[2] if h.causes else None
             told.append(Calibrated(path=path, unit=unit, file=shown[0], nominal=shown[1], extended=causes))
@@ -234,7 +234,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
     """
     data, scenario = found.problem.data.campaign, replace(setting.scenario, spec=setting.spec)
     oils = dict.fromkeys(data.oil)
-    if len(oils) == 1 and (own := setting.oils.get(next(iter(oils)))):
+    if len(oils) == 1 and (own := found.problem.data.oils.get(next(iter(oils)))):
         known = scenario.settable()
         filled = {path: value for path, value in own.items() if path in known}
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
