@@ -176,7 +176,9 @@ def _code(
 ) -> tuple[str, bytes, Directions | None]:
     """The C source and the description, with the identification that follows from both; directions of deviations."""
     model = equations(flat, variables.audit)
-    directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
+    directions = None if uncertain is None else leading(flat, model, variables, uncertain)
+    if uncertain is not None and directions is not None:
+        uncertain.tell(directions)
     code, dependent = source(flat, model, variables, fmi, directions, real_time), dependencies(model, variables)
     without_guid = description(
         flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi

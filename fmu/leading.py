@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -30,6 +30,16 @@ SHORTFALL = 0.01
 _INTERVALS = 80
 #: End of the first interval, as a share of the run: fast states settle early.
 _FIRST = 1e-4
+#: Outer nodes of Gauss and Hermite's rule for three points [standard deviations].
+_NODES = (-(3**0.5), 3**0.5)
+#: Weights of its nodes, the middle one first.
+_WEIGHTS = (2 / 3, 1 / 6, 1 / 6)
+#: Why there is no mixture.
+_NO_MIXTURE = "{}: the default experiment fails{}: no mixture. Take --uncertainty linear."
+#: Part of its largest value in the run below which a standard deviation is not compared.
+_SMALL = 0.01
+#: Part of its nominal value below which it is not.
+_NOTHING = 1e-6
 #: Digits of a direction: what follows is round-off, which differs between machines.
 _DIGITS = 9
 
@@ -139,10 +149,30 @@ class Uncertain:
     Attributes:
         reasons: why results are uncertain
         shown: states and outputs that get a standard deviation
+        mixture: whether the model itself runs at three nodes along the leading direction, and is linear about each
+        tell: called with the directions that are found
     """
 
     reasons: tuple[Uncertainty, ...]
     shown: tuple[str, ...]
+    mixture: bool = False
+    tell: Callable[[Directions], None] = lambda found: None
+
+
+@dataclass(frozen=True)
+class Side:
+    """A node of a mixture along the leading direction: parameters are there p * factors + shifts.
+
+    Attributes:
+        node: where it lies [standard deviations]
+        factors, shifts: of the parameters (parameters,); those that are zero are shifted, as none are
+        states: change of the states' starts (states,)
+    """
+
+    node: float
+    factors: np.ndarray
+    shifts: np.ndarray
+    states: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -155,12 +185,17 @@ class Directions:
         reasons: what they combine
         shortfall: share by which a standard deviation comes out too small for what is left out, at most, at any time of
             the default experiment; None where that run fails and nothing is left out
+        off: largest difference of a linear standard deviation from that of the mixture there, relative to the latter;
+            None where that is not known
+        sides: of a mixture its other nodes; their direction is none of `parameters` and `states`
     """
 
     parameters: np.ndarray
     states: np.ndarray
     reasons: tuple[Uncertainty, ...]
     shortfall: float | None
+    off: float | None = None
+    sides: tuple[Side, ...] = ()
 
     @property
     def count(self) -> int:
@@ -169,8 +204,8 @@ class Directions:
 
     @property
     def moving(self) -> tuple[int, ...]:
-        """Positions of the parameters that some direction moves."""
-        return tuple(np.flatnonzero(self.parameters.any(axis=1)).tolist())
+        """Positions of the parameters that some direction moves; the first where states alone are uncertain."""
+        return tuple(np.flatnonzero(self.parameters.any(axis=1)).tolist()) or (0,)
 
 
 def locate_deviations(table: Table) -> tuple[int, ...]:
@@ -180,41 +215,83 @@ def locate_deviations(table: Table) -> tuple[int, ...]:
     return tuple(place if place < states else place - inputs for place in places)
 
 
-def leading(flat: FlatModel, model: Equations, table: Table, reasons: tuple[Uncertainty, ...]) -> Directions:
+def leading(flat: FlatModel, model: Equations, table: Table, what: Uncertain) -> Directions:
     """The fewest directions that show the standard deviations.
 
     The sensitivities to all uncertainties are integrated over the default experiment, at the inputs' start values.
-    Their singular vectors are the directions; each deviation counts alike at each time.
+    Their singular vectors are the directions; each deviation counts alike at each time. The model runs at the nodes of
+    the mixture, too, which tells how far linear deviations are off.
 
     Args:
         flat: the model, with the parameters of the FMU
         model: its equations
         table: its variables with their start values
-        reasons: what is uncertain
+        what: is uncertain
 
     Raises:
-        FmuError: none of it moves a parameter or a state of the model
+        FmuError: none of it moves a parameter or a state of the model; the model does not run at a node of the mixture
     """
     parameters, states = table.of("parameter"), table.of("state")[: len(flat.states)]
     known = {v.name for v in (*parameters, *states)}
-    reasons = tuple(r for r in reasons if any(change and path in known for path, change in r.changes.items()))
+    reasons = tuple(r for r in what.reasons if any(change and path in known for path, change in r.changes.items()))
     if not reasons:
         raise FmuError(f"{flat.name}: no parameter with an uncertainty has an effect: no standard deviations.")
     full = Directions(_changes(parameters, reasons), _changes(states, reasons), reasons, None)
     try:
-        slopes = _slopes(flat, model, table, full)
+        middle = _run(flat, model, table, full, _side(table, full, np.zeros(len(reasons)), 0.0))
     except SolveError:
+        if what.mixture:
+            raise FmuError(_NO_MIXTURE.format(flat.name, "")) from None
         return full
-    deviations = np.sqrt((slopes**2).sum(axis=2))  # (times, shown)
-    scaled = slopes / np.maximum(deviations, 1e-300)[:, :, None]
+    deviations = np.sqrt((middle[1] ** 2).sum(axis=2))  # (times, shown)
+    scaled = middle[1] / np.maximum(deviations, 1e-300)[:, :, None]
     turned = np.linalg.svd(scaled.reshape(-1, full.count), full_matrices=False)[2].T
+    turned = turned * np.sign(turned[np.abs(turned).argmax(axis=0), range(turned.shape[1])])  # either sign would do
     short = 1 - np.sqrt(np.cumsum((scaled @ turned) ** 2, axis=2)[deviations > 0].min(axis=0))
     count = int(np.argmax(short <= SHORTFALL)) + 1
-    kept = turned[:, :count]
-    kept = kept * np.sign(kept[np.abs(kept).argmax(axis=0), range(count)])  # either sign would do
+    sides = tuple(_side(table, full, turned[:, 0], node) for node in _NODES)
+    try:
+        mixed = _mix([middle, *(_run(flat, model, table, full, side) for side in sides)], turned[:, 0])
+    except SolveError:
+        if what.mixture:
+            at = f" with parameters at {_NODES[1]:.3g} standard deviations"
+            raise FmuError(_NO_MIXTURE.format(flat.name, at)) from None
+        off = None
+    else:
+        least = _SMALL * mixed.max(axis=0) + _NOTHING * np.array([v.quantity.nominal for v in table.of("deviation")])
+        off = float((np.abs(deviations - mixed) / np.maximum(mixed, least)).max())
+    kept = turned[:, what.mixture : count]
+    if not kept.size:  # the code has one at least
+        kept = np.zeros((full.count, 1))
     return Directions(
-        _round(full.parameters @ kept), _round(full.states @ kept), reasons, max(float(short[count - 1]), 0.0)
+        _round(full.parameters @ kept),
+        _round(full.states @ kept),
+        reasons,
+        max(float(short[count - 1]), 0.0),
+        off,
+        sides if what.mixture else (),
     )
+
+
+def _side(table: Table, full: Directions, direction: np.ndarray, node: float) -> Side:
+    """A node along a direction (reasons,). Logarithms of parameters are normal; one that is zero is so itself."""
+    start = np.array([v.start or 0.0 for v in table.of("parameter")])
+    moved, scale = node * full.parameters @ direction, np.where(start, start, 1.0)
+    return Side(
+        node,
+        _round(np.where(start, np.exp(moved / scale), 1.0)),
+        _round(np.where(start, 0.0, moved)),
+        _round(node * full.states @ direction),
+    )
+
+
+def _mix(nodes: Sequence[tuple[np.ndarray, np.ndarray]], direction: np.ndarray) -> np.ndarray:
+    """Standard deviations (times, shown) of a mixture from values and slopes at its nodes along a direction."""
+    weights = np.array(_WEIGHTS)[:, None, None]
+    values = np.array([y for y, _ in nodes])
+    across = [((slopes - (slopes @ direction)[:, :, None] * direction) ** 2).sum(axis=2) for _, slopes in nodes]
+    apart = (values - (weights * values).sum(axis=0)) ** 2
+    return np.asarray(np.sqrt((weights * (np.array(across) + apart)).sum(axis=0)))
 
 
 def _changes(variables: Sequence[Variable], reasons: Sequence[Uncertainty]) -> np.ndarray:
@@ -224,28 +301,34 @@ def _changes(variables: Sequence[Variable], reasons: Sequence[Uncertainty]) -> n
 
 
 def _round(matrix: np.ndarray) -> np.ndarray:
-    return np.array([[float(f"{value:.{_DIGITS}g}") for value in row] for row in matrix]).reshape(matrix.shape)
+    return np.array([float(f"{value:.{_DIGITS}g}") for value in matrix.ravel()]).reshape(matrix.shape)
 
 
-def _slopes(flat: FlatModel, model: Equations, table: Table, full: Directions) -> np.ndarray:
-    """What is shown along each direction over the default experiment (times, shown, directions)."""
+def _run(
+    flat: FlatModel, model: Equations, table: Table, full: Directions, side: Side
+) -> tuple[np.ndarray, np.ndarray]:
+    """What is shown (times, shown), and along each direction (times, shown, directions), in the default experiment."""
     stop = float(EXPERIMENT["stopTime"])
     edges = np.append(0.0, stop * np.geomspace(_FIRST, 1.0, _INTERVALS))
     times = np.sort(np.append(edges, (edges[1:] + edges[:-1]) / 2))
-    values = {v.name: v.start or 0.0 for kind in ("input", "parameter") for v in table.of(kind)}
-    states = {v.name: v.start or 0.0 for v in table.of("state")[: len(flat.states)]}
-    u, p = (np.array([v.start or 0.0 for v in table.of(kind)]) for kind in ("input", "parameter"))
-    run = simulate(flat, Schedule(np.array([0.0, stop]), {}), start=states, values=values, times=times)
-    x = np.array([run[name] for name in states])
+    parameters, inputs, states = table.of("parameter"), table.of("input"), table.of("state")[: len(flat.states)]
+    start, u = (np.array([v.start or 0.0 for v in group]) for group in (parameters, inputs))
+    p = np.clip(start * side.factors + side.shifts, *np.array([v.bounds for v in parameters]).T)
+    begin = {v.name: (v.start or 0.0) + change for v, change in zip(states, side.states.tolist(), strict=True)}
+    values = {v.name: v.start or 0.0 for v in inputs} | dict(zip((v.name for v in parameters), p.tolist(), strict=True))
+    run = simulate(flat, Schedule(np.array([0.0, stop]), {}), start=begin, values=values, times=times)
+    x = np.array([run[name] for name in begin])
     z = algebra(flat).solve_rows(x, np.tile(u[:, None], len(times)), np.tile(p[:, None], len(times)), None)
     x = np.vstack([x, np.zeros((2 * table.audit, len(times)))])
     linear = Sensitivities(model, full.count, full.moving, locate_deviations(table))
     c = model.constants(p)
-    p_dot, s = full.parameters, full.states
+    p_dot, s = full.parameters * np.where(start, p / np.where(start, start, 1.0), 1.0)[:, None], full.states
     c_dot = np.hstack([model.constants_directional(p, column).full() for column in p_dot.T])
     rows = []
     for k, length in enumerate(np.diff(edges)):
         middle, end = 2 * k + 1, 2 * k + 2
         s = linear.move(x[:, middle], z[:, middle], u, p, c, p_dot, c_dot, length, s).full()
         rows.append(linear.slopes(x[:, end], z[:, end], u, p, c, p_dot, c_dot, s).full())
-    return np.array(rows)
+    of = {v.reference: v.name for v in table}
+    shown = np.array([run[of[v.of]][2::2] for v in table.of("deviation") if v.of is not None]).T
+    return shown, np.array(rows)

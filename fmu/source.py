@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..model.core.flat import FlatModel
 from ..model.run import newton
 from ..model.run.algebra import GUESSES
@@ -72,7 +70,7 @@ def source(
     if directions is not None:
         functions += Sensitivities(model, directions.count, directions.moving, locate_deviations(table)).functions
     bounds = {"REAL_TIME": emit.number(real_time or 0.0), "MAX_CORRECTIONS": MAX_CORRECTIONS if real_time else -1}
-    values = [_sizes(flat, model, table, directions, bounds), _tables(flat, table), _directions(directions)]
+    values = [_sizes(flat, model, table, directions, bounds), _tables(flat, table), _directions(directions, table)]
     generated = "\n".join([*values, *map(emit.function, functions)])
     instead = {} if directions is None else _UNCERTAIN
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
@@ -105,6 +103,7 @@ def _sizes(
         "NR": len(flat.relations),
         "NS": len(flat.states),
         "ND": 0 if directions is None else directions.count,
+        "N_SIDES": 0 if directions is None else len(directions.sides),
         "NSD": len(table.of("deviation")),
         "N_CHOICES": len(table.of("choice")),
         "N_PRESETS": len(_presets(table)),
@@ -172,11 +171,24 @@ def _tables(flat: FlatModel, table: Table) -> str:
     return "\n".join(texts)
 
 
-def _directions(directions: Directions | None) -> str:
-    """How states, and of an uncertain model parameters, move along the directions, one direction after the other."""
-    told = {} if directions is None else {"model_directions": directions.parameters}
-    told["model_state_directions"] = np.zeros((0, 0)) if directions is None else directions.states
-    return "\n".join(_array("const double", name, map(emit.number, m.T.ravel().tolist())) for name, m in told.items())
+def _directions(directions: Directions | None, table: Table) -> str:
+    """How states, and of an uncertain model parameters, move along the directions, one direction after the other; where
+    the nodes of a mixture lie beside the model.
+    """
+    sides = () if directions is None else directions.sides
+    told = {"model_sides": [side.node for side in sides]}
+    if directions is not None:
+        told |= {
+            "model_directions": directions.parameters.T.ravel().tolist(),
+            "model_side_factors": [value for side in sides for value in side.factors.tolist()],
+            "model_side_shifts": [value for side in sides for value in side.shifts.tolist()],
+            "model_side_states": [value for side in sides for value in side.states.tolist()],
+        }
+    told["model_state_directions"] = [] if directions is None else directions.states.T.ravel().tolist()
+    texts = [_array("const double", name, map(emit.number, values)) for name, values in told.items()]
+    if directions is not None:
+        texts.append(_array("const int", "model_deviating", [str(v.of) for v in table.of("deviation")]))
+    return "\n".join(texts)
 
 
 class _Preset(NamedTuple):

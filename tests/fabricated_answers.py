@@ -111,10 +111,17 @@ def benched_fmu() -> None:
 
 def benched_uncertainty() -> None:
     """Outputs of a temperature and of an efficiency, some rows without a result."""
-    one = {"name": "oil.T", "unit": "K", "fmu_sd": 1.25, "drawn_sd": 1.375, "worst_difference": -0.0225}
+    one = {
+        "way": "linear",
+        "name": "oil.T",
+        "unit": "K",
+        "fmu_sd": 1.25,
+        "drawn_sd": 1.375,
+        "worst_difference": -0.0225,
+    }
     one |= {"worst_time_s": 300.0, "standard_error": 0.0075}
-    other = one | {"name": "efficiency.eta", "unit": "1", "fmu_sd": 0.0015, "worst_time_s": 14400.0}
-    cost = {"plain_rhs": 640.0, "uncertain_rhs": 1120.0, "ratio": 1.75}
+    other = one | {"way": "mixture", "name": "efficiency.eta", "unit": "1", "fmu_sd": 0.0015, "worst_time_s": 14400.0}
+    cost = {"plain_rhs": 640.0, "linear_rhs": 1120.0, "mixture_rhs": 3360.0}
     found = {"rig": "mine", "draws": 10_000, "failed": 3, "outputs": [one, other], "cost": cost}
     bench._print_uncertainty(found)
 

@@ -31,6 +31,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 {
     Instance *m, untold;
     size_t length = name ? strlen(name) : 0;
+    int i;
     (void)resources;
     (void)visible;
     if (!callbacks) return NULL;
@@ -40,12 +41,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (length == 0) return refuse(&untold, "fmi2Instantiate: the instance has no name."), NULL;
     if (type != fmi2ModelExchange && type != fmi2CoSimulation)
         return refuse(&untold, "fmi2Instantiate: unknown FMU type %d.", (int)type), NULL;
-    if (ND > 0 && type == fmi2ModelExchange)
+    if (NSD > 0 && type == fmi2ModelExchange)
         return refuse(&untold, "fmi2Instantiate: an FMU with standard deviations serves co-simulation only."), NULL;
     if (!guid || strcmp(guid, MODEL_GUID) != 0)
         return refuse(&untold, "fmi2Instantiate: wrong GUID %.100s: this binary belongs to %s.",
                       guid ? guid : "(none)", MODEL_GUID), NULL;
-    m = calloc(1, sizeof *m);
+    m = calloc(1 + N_SIDES, sizeof *m);
     if (m) m->name = malloc(length + 1);
     if (!m || !m->name) {
         free(m);
@@ -56,6 +57,10 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     m->log_mask_at_start = logging ? (1u << N_CATEGORIES) - 1 : 0;
     m->s.type = type;
     start(m);
+    for (i = 1; i <= N_SIDES; i++) {
+        m[i].name = m->name;
+        m[i].callbacks = m->callbacks;
+    }
     return m;
 }
 
@@ -111,34 +116,47 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
     return fmi2OK;
 }
 
-static fmi2Status go_back(Instance *m, const State *to)
+/* The states of an instance and of those behind it. */
+static void keep(const Instance *m, State states[])
 {
-    m->s = *to;
-    changed(m);
+    int k;
+    for (k = 0; k <= N_SIDES; k++) memcpy(states + k, &m[k].s, sizeof *states);
+}
+
+static fmi2Status go_back(Instance *m, const State states[])
+{
+    int k;
+    for (k = 0; k <= N_SIDES; k++) {
+        memcpy(&m[k].s, states + k, sizeof *states);
+        m[k].constants_known = 0;
+        changed(m + k);
+    }
     return fmi2Error;
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     Instance *m = c;
-    State before;
+    State before[1 + N_SIDES];
     fmi2Status status;
     const char *block;
-    int r;
+    int r, k;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
     for (r = 0; r < NU; r++)
         if (m->s.wrong[r]) return refuse_value(m, "fmi2ExitInitializationMode", FIRST_U + r, m->asked[r]), fmi2Error;
-    before = m->s;
-    status = begin(m);
+    keep(m, before);
+    follow(m);
+    for (k = N_SIDES, status = fmi2OK; k >= 0; k--)
+        if (begin(m + k) != fmi2OK) status = fmi2Warning;
     if ((block = unsolved(m)) != NULL)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
-                      "parameters.", block), go_back(m, &before);
+                      "parameters.", block), go_back(m, before);
     if ((r = wrong_result(m)) != N_VARIABLES)
         return refuse(m, "fmi2ExitInitializationMode: %s is %.10g%s, but must be %s. Check start values, inputs and "
                       "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]),
-               go_back(m, &before);
-    accept_algebra(m);
+               go_back(m, before);
+    for (k = 0; k <= N_SIDES; k++) accept_algebra(m + k);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
     warn_validity(m);
     return status;

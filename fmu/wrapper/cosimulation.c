@@ -68,9 +68,9 @@ static fmi2Status stuck(const Instance *m, double time, double step, const Advan
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return)
 {
     Instance *m = c;
-    State before;
+    State before[1 + N_SIDES];
     Advance w;
-    int r, wanted;
+    int r, k, wanted;
     (void)no_return;
     if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
     if (!timely(m, time, step)) return fmi2Error;
@@ -85,10 +85,12 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
                        "Nothing has changed; retry with a shorter step.", time, time + step, model_names[r],
                        model_ranges[r], model_units[r]);
     }
-    before = m->s;
-    if (!advance(m, step, &w)) {
-        m->s = before;
-        changed(m);
+    keep(m, before);
+    follow(m);
+    for (k = N_SIDES; k >= 0 && advance(m + k, step, &w); k--) {}
+    if (k >= 0) {
+        go_back(m, before);
+        if (k > 0) warn(m, "fmi2DoStep: parameters at %+.3g standard deviations are what leads to:", model_sides[k - 1]);
         remember_refusal(m, step, w.block ? w.block : model_names[FIRST_X + w.worst]);
         return stuck(m, time, step, &w);
     }
@@ -102,8 +104,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     m->outputs_wanted = 0;
     if (wanted && (r = wrong_result(m)) != N_VARIABLES) {
         double value = value_of(m, r);
-        m->s = before;
-        changed(m);
+        go_back(m, before);
         remember_refusal(m, step, model_names[r]);
         return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g%s, but must be %s. "
                        "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,

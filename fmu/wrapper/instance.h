@@ -1,5 +1,6 @@
 /* One instance of the FMU. Everything a saved FMU state holds is in State: plain data without pointers, so saving,
-   restoring and serializing are copies. The model's sizes, tables and functions stand above this text. */
+   restoring and serializing are copies. Behind an instance with a mixture lie N_SIDES copies of it, whose parameters are
+   others (uncertain.c). The model's sizes, tables and functions stand above this text. */
 
 #include <math.h>
 #include <stdarg.h>

@@ -2,6 +2,7 @@
 
 #define SAVED_MAGIC "GHFMU2\0"
 #define SAVED_VERSION 2u
+#define SAVED_SIZE ((1 + N_SIDES) * sizeof(State))
 
 typedef struct {
     char magic[8];
@@ -24,7 +25,7 @@ static unsigned hash(const void *data, size_t size)
 static State *space_for_state(Instance *m, fmi2FMUstate *saved, const char *function)
 {
     if (missing(m, saved, 1, function)) return NULL;
-    if (!*saved) *saved = malloc(sizeof(State));
+    if (!*saved) *saved = malloc(SAVED_SIZE);
     if (!*saved) refuse(m, "%s: out of memory.", function);
     return *saved;
 }
@@ -35,7 +36,8 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *saved)
     State *copy;
     if (!allowed(m, ANY_MODE, "fmi2GetFMUstate")) return fmi2Error;
     if (!(copy = space_for_state(m, saved, "fmi2GetFMUstate"))) return fmi2Error;
-    memcpy(copy, &m->s, sizeof *copy);
+    follow(m);
+    keep(m, copy);
     return fmi2OK;
 }
 
@@ -47,9 +49,7 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate saved)
     if (missing(m, saved, 1, "fmi2SetFMUstate")) return fmi2Error;
     if (copy->type != m->s.type)
         return refuse(m, "fmi2SetFMUstate: the state was saved by an instance of the other interface.");
-    memcpy(&m->s, copy, sizeof m->s);
-    m->constants_known = 0;
-    changed(m);
+    go_back(m, copy);
     return fmi2OK;
 }
 
@@ -67,23 +67,23 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate saved, size_
     static const char f[] = "fmi2SerializedFMUstateSize";
     if (!allowed(c, ANY_MODE, f)) return fmi2Error;
     if (missing(c, saved, 1, f) || missing(c, size, 1, f)) return fmi2Error;
-    *size = sizeof(SavedHeader) + sizeof(State);
+    *size = sizeof(SavedHeader) + SAVED_SIZE;
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate saved, fmi2Byte bytes[], size_t size)
 {
     static const char f[] = "fmi2SerializeFMUstate";
-    SavedHeader header = {SAVED_MAGIC, SAVED_VERSION, sizeof(State), 0, 0};
+    SavedHeader header = {SAVED_MAGIC, SAVED_VERSION, SAVED_SIZE, 0, 0};
     if (!allowed(c, ANY_MODE, f)) return fmi2Error;
     if (missing(c, saved, 1, f) || missing(c, bytes, 1, f)) return fmi2Error;
-    if (size < sizeof header + sizeof(State))
+    if (size < sizeof header + SAVED_SIZE)
         return refuse(c, "%s: %lu bytes are too few, %lu are needed.", f, (unsigned long)size,
-                      (unsigned long)(sizeof header + sizeof(State)));
+                      (unsigned long)(sizeof header + SAVED_SIZE));
     header.model = hash(MODEL_GUID, strlen(MODEL_GUID));
-    header.checksum = hash(saved, sizeof(State));
+    header.checksum = hash(saved, SAVED_SIZE);
     memcpy(bytes, &header, sizeof header);
-    memcpy(bytes + sizeof header, saved, sizeof(State));
+    memcpy(bytes + sizeof header, saved, SAVED_SIZE);
     return fmi2OK;
 }
 
@@ -94,15 +94,15 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     State *copy;
     if (!allowed(c, ANY_MODE, f)) return fmi2Error;
     if (missing(c, bytes, 1, f)) return fmi2Error;
-    if (size < sizeof header + sizeof(State)) return refuse(c, "%s: the saved state is too short.", f);
+    if (size < sizeof header + SAVED_SIZE) return refuse(c, "%s: the saved state is too short.", f);
     memcpy(&header, bytes, sizeof header);
     if (memcmp(header.magic, SAVED_MAGIC, sizeof header.magic) != 0 || header.version != SAVED_VERSION)
         return refuse(c, "%s: these bytes are no saved state of this version.", f);
-    if (header.model != hash(MODEL_GUID, strlen(MODEL_GUID)) || header.size != sizeof(State))
+    if (header.model != hash(MODEL_GUID, strlen(MODEL_GUID)) || header.size != SAVED_SIZE)
         return refuse(c, "%s: the state was saved by another FMU.", f);
-    if (header.checksum != hash(bytes + sizeof header, sizeof(State)))
+    if (header.checksum != hash(bytes + sizeof header, SAVED_SIZE))
         return refuse(c, "%s: the saved state is damaged.", f);
     if (!(copy = space_for_state(c, saved, f))) return fmi2Error;
-    memcpy(copy, bytes + sizeof header, sizeof *copy);
+    memcpy(copy, bytes + sizeof header, SAVED_SIZE);
     return fmi2OK;
 }

@@ -119,6 +119,7 @@ class Answer:
         impact: mean change of the readings
         nominal, extended: predicted oil temperatures by point
         gross: rows and columns of single readings that it calls wrong; None where it says nothing of them
+        chances: probability of each name, whatever else acts
     """
 
     verdict: str
@@ -127,6 +128,12 @@ class Answer:
     nominal: Mapping[int, float] = field(default_factory=dict)
     extended: Mapping[int, float] = field(default_factory=dict)
     gross: frozenset[tuple[int, str]] | None = None
+    chances: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def likely(self) -> frozenset[str]:
+        """Names that are more likely than not: what it claims of several causes; none without an alarm."""
+        return frozenset(name for name, p in self.chances.items() if p >= 0.5 and name not in UNNAMED and self.alarm)
 
     @property
     def alarm(self) -> bool:
@@ -162,13 +169,17 @@ def read_answer(place: Path) -> Answer:
             names = classes_of(h["causes"])
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
+        chances: dict[str, float] = {}
+        for c in result.get("causes", ()):
+            for name in classes_of([c["id"]]):
+                chances[name] = chances.get(name, 0.0) + float(c["probability"])
         verdict, impact = str(result["verdict"]), {k: _estimate(v) for k, v in result.get("impact", {}).items()}
         gross = _gross(result)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
     nominal, extended = _predictions(place / "PREDICTIONS.csv")
-    return Answer(verdict, tuple(Hypothesis(*h) for h in ranked), impact, nominal, extended, gross)
+    return Answer(verdict, tuple(Hypothesis(*h) for h in ranked), impact, nominal, extended, gross, chances)
 
 
 def _estimate(value: Any) -> float:

@@ -38,8 +38,8 @@ class Outcome:
         answered: whether there was an answer
         alarm: whether it said that something is wrong
         exact: whether the likeliest hypothesis is the truth, or one as fair
-        shared: how many of the true names the likeliest hypothesis holds; hidden: how many there are
-        claimed: how many names the likeliest hypothesis holds where something is wrong
+        shared: how many of the true names are more likely than not; hidden: how many there are
+        claimed: how many names are more likely than not
         covered: whether the truth is among the hypotheses that make 0.9 together; size: how many those are
         sure_wrong: whether it names a cause with more than 0.9 that is not the truth
         impact_error: error of the stated change of the readings over that change; None where there is hardly any
@@ -109,9 +109,9 @@ def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, probl
         answered=answer is not None,
         alarm=given.alarm,
         exact=given.alarm and top.names in right,
-        shared=len(top.names & names) if given.alarm else 0,
+        shared=len(given.likely & names),
         hidden=len(names),
-        claimed=len(top.names) if given.alarm and top.claims else 0,
+        claimed=len(given.likely),
         covered=any(h.names in right for h in credible),
         size=len(credible),
         sure_wrong=top.claims and given.alarm and top.probability > SURE and top.names not in right,

@@ -378,7 +378,9 @@ def truth_of(*causes: str, kind: str = "single") -> dict:
 
 def answer(*hypotheses: tuple[tuple[str, ...], float], verdict: str = "explained", **rest: dict) -> Answer:
     ranked = tuple(Hypothesis(classes_of(causes), p) for causes, p in hypotheses)
-    return Answer(verdict, ranked, **rest)
+    names = {name for h in ranked for name in h.names}
+    chances = {name: sum(h.probability for h in ranked if name in h.names) for name in names}
+    return Answer(verdict, ranked, chances=chances, **rest)
 
 
 def test_look_alikes_are_one_answer(tmp_path: Path) -> None:
@@ -401,6 +403,9 @@ def test_sets_pairs_and_certainty() -> None:
     assert not half.exact and half.shared == 1 and half.sure_wrong
     full = score(pair, answer((("losses.windage", "cooling.air"), 0.95)), 1.0)
     assert full.exact and full.shared == 2 and not full.sure_wrong
+    three = (("losses.windage", "cooling.air"), 0.3), (("losses.windage", "cooling.contact"), 0.4)
+    likely = score(truth_of("cooling.air", "losses.churning", kind="several"), answer(*three), 1.0)
+    assert (likely.shared, likely.claimed) == (1, 1)
     unnamed = score(truth_of("outside.crosstalk", kind="outside"), answer((("model.unexplained",), 0.99)), 1.0)
     assert unnamed.alarm and not unnamed.sure_wrong
     wide = score(truth_of("cooling.air"), answer((("cooling.contact",), 0.5), (("cooling.air",), 0.45)), 1.0)

@@ -83,7 +83,7 @@ PLANTED = {
         "but the state changed",
     ),
     "takes damaged states": (
-        "header.checksum != hash(bytes + sizeof header, sizeof(State))",
+        "header.checksum != hash(bytes + sizeof header, SAVED_SIZE)",
         "0",
         "damaged state was taken",
     ),

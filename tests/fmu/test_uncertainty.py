@@ -4,10 +4,12 @@ import math
 import subprocess
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
@@ -16,7 +18,15 @@ from fmu_in_c import gcc
 from gearheat.fmu.batch import Batch
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
-from gearheat.fmu.leading import SHORTFALL, Sensitivities, Uncertain, Uncertainty, leading, locate_deviations
+from gearheat.fmu.leading import (
+    SHORTFALL,
+    Directions,
+    Sensitivities,
+    Uncertain,
+    Uncertainty,
+    leading,
+    locate_deviations,
+)
 from gearheat.fmu.play import Player, play
 from gearheat.fmu.variables import table
 from gearheat.model.errors import FmuError
@@ -34,6 +44,8 @@ CIRCUIT = Uncertain(
     tuple(Uncertainty(name, {name: sd}) for name, sd in SD.items()),
     ("capacitor.v", "resistor.i"),
 )
+#: So large that the circuit is not linear in them.
+WIDE = {"resistor.R": 0.6, "capacitor.C": 0.6, "capacitor.v": 0.2}
 #: Relative standard deviations in the machine of conftest.py; the last two move together.
 HEAT = Uncertain(
     (
@@ -60,6 +72,21 @@ def machine_3(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory)
     return export(models.heat, tmp_path_factory.mktemp("sd") / "heat3.fmu", uncertain=HEAT, fmi=3)
 
 
+@pytest.fixture(scope="module")
+def mixed(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Directions]:
+    """The circuit with a mixture, and its directions."""
+    told: list[Directions] = []
+    wide = tuple(Uncertainty(name, {name: sd}) for name, sd in WIDE.items())
+    what = Uncertain(wide, CIRCUIT.shown, mixture=True, tell=told.append)
+    return export(models.rc, tmp_path_factory.mktemp("sd") / "mixed.fmu", uncertain=what), told[0]
+
+
+@pytest.fixture(scope="module")
+def mixed_machine_3(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    what = replace(HEAT, mixture=True)
+    return export(models.heat, tmp_path_factory.mktemp("sd") / "mixed3.fmu", uncertain=what, fmi=3)
+
+
 @pytest.mark.parametrize("resistance", (R, 2 * R))
 def test_closed_form_of_the_circuit(circuit: Path, resistance: float) -> None:
     """v = u + (v_0 - u) exp(-t / R C); a parameter set to another value keeps its relative uncertainty."""
@@ -74,6 +101,40 @@ def test_closed_form_of_the_circuit(circuit: Path, resistance: float) -> None:
     i_sd = np.sqrt(by_r**2 + by_c**2 + (by_start / resistance) ** 2)
     assert run["capacitor.v.sd"] == pytest.approx(v_sd, rel=2e-3)
     assert run["resistor.i.sd"] == pytest.approx(i_sd, rel=2e-3)
+
+
+def test_closed_form_of_a_mixture(mixed: tuple[Path, Directions]) -> None:
+    """Three circuits with the weights of Gauss and Hermite's rule, each linear in the directions that are left."""
+    fmu, found = mixed
+    run = play(fmu, {}, 20.0, 0.5, start={"resistor.R": 2 * R}, record=["capacitor.v.sd"], tolerance=1e-6)
+    assert [side.node for side in found.sides] == pytest.approx([-math.sqrt(3), math.sqrt(3)]) and found.count == 2
+    factors = np.array([[1.0, 1.0], *(side.factors for side in found.sides)])
+    first = V_0 + np.array([0.0, *(side.states[0] for side in found.sides)])
+    s = run.time / (2 * R * C * factors.prod(axis=1)[:, None])  # (nodes, times)
+    v, left = U + (first[:, None] - U) * np.exp(-s), (first[:, None] - U) * np.exp(-s)
+    by_rate = left * s
+    moves = np.vstack([found.parameters, found.states]).T
+    slopes = [by_rate * (r / R + c / C) + np.exp(-s) * x for r, c, x in moves]
+    weights = np.array([[4.0], [1.0], [1.0]]) / 6
+    apart = v - (weights * v).sum(axis=0)
+    expected = np.sqrt((weights * (sum(slope**2 for slope in slopes) + apart**2)).sum(axis=0))
+    assert run["capacitor.v.sd"] == pytest.approx(expected, rel=2e-3)
+    assert found.off is not None and found.off > 0.03
+
+
+def test_a_switch_is_seen_by_the_export(models: SimpleNamespace) -> None:
+    """y = tanh((x - 1 h) / w) at x = a t / 2 is nearly linear in a as long as x is uncertain by far less than w."""
+    t, a, w = models.rc.x, models.rc.p[0], 900.0
+    y = ca.vertcat(ca.tanh((t - 3600.0) / w), 0.0)
+    switch = replace(models.rc, ode=a / 2, y=y, supply=a * 0, throughput=a * 0, stored=a * 0)
+    model, variables = equations(switch), table(switch, deviating=CIRCUIT.shown)
+    small, large = (
+        leading(switch, model, variables, Uncertain((Uncertainty("rate", {"resistor.R": sd}),), (), mixture=True))
+        for sd in (0.02, 0.5)
+    )
+    assert small.off is not None and large.off is not None and small.off < 0.1 < large.off
+    assert (large.parameters == 0).all() and large.sides[1].factors[0] == pytest.approx(math.exp(math.sqrt(3) * 0.25))
+    assert Sensitivities(model, large.count, large.moving, locate_deviations(variables)).move.n_in() == 9
 
 
 def test_monte_carlo(models: SimpleNamespace, machine: Path) -> None:
@@ -93,7 +154,7 @@ def test_leading_directions_leave_little_out(models: SimpleNamespace) -> None:
     """Two reasons that act alike take one direction, which is as large as both."""
     alike = (Uncertainty("one", {"oil.b_0": 0.002}), Uncertainty("other", {"oil.b_0": 0.001}))
     model, variables = equations(models.heat), table(models.heat, deviating=HEAT.shown)
-    found = leading(models.heat, model, variables, alike)
+    found = leading(models.heat, model, variables, Uncertain(alike, HEAT.shown))
     assert found.count == 1 and found.shortfall is not None and found.shortfall <= SHORTFALL
     place = [q.name for q in models.heat.parameters].index("oil.b_0")
     assert found.parameters[place, 0] == pytest.approx(math.hypot(0.002, 0.001))
@@ -102,7 +163,7 @@ def test_leading_directions_leave_little_out(models: SimpleNamespace) -> None:
 def test_a_step_costs_less_than_three_plain_ones(models: SimpleNamespace) -> None:
     """Counted in operations: a sensitivity step beside each step of the solver."""
     model, variables = equations(models.heat), table(models.heat, deviating=HEAT.shown)
-    found = leading(models.heat, model, variables, HEAT.reasons)
+    found = leading(models.heat, model, variables, HEAT)
     added = Sensitivities(model, found.count, found.moving, locate_deviations(variables)).move
     assert added.n_instructions() < 2 * model.step.n_instructions()
 
@@ -126,8 +187,29 @@ def test_saved_states_carry_the_sensitivities(opened: Open, machine: Path) -> No
         instance.fmu.freeFMUState(kept)
 
 
-def test_a_steady_start_has_the_deviations_of_rest(machine: Path) -> None:
-    names = [f"{name}.sd" for name in HEAT.shown]
+def test_saved_states_carry_a_mixture(opened: Open, mixed: tuple[Path, Directions]) -> None:
+    def go_on(one: Opened) -> list[list[float]]:
+        rows = []
+        for k in range(4):
+            one.set(source__v=5.0 + k)
+            one.fmu.doStep(10.0 + k, 1.0)
+            rows.append(one.everything())
+        return rows
+
+    one, other = opened(mixed[0]).start(), opened(mixed[0])
+    one.fmu.doStep(0.0, 10.0)
+    state = one.fmu.getFMUState()
+    saved, first = one.fmu.serializeFMUState(state), go_on(one)
+    restored = other.fmu.deserializeFMUState(saved)
+    for instance, at in ((one, state), (other, restored)):
+        instance.fmu.setFMUState(at)
+        assert go_on(instance) == first
+        instance.fmu.freeFMUState(at)
+
+
+@pytest.mark.parametrize("fmu", ("machine", "mixed_machine_3"))
+def test_a_steady_start_has_the_deviations_of_rest(fmu: str, request: pytest.FixtureRequest) -> None:
+    machine, names = request.getfixturevalue(fmu), [f"{name}.sd" for name in HEAT.shown]
     steady, long = (
         play(machine, {}, stop, stop, start={"start": item}, record=names) for stop, item in ((1.0, 2.0), (1e6, 1.0))
     )
@@ -141,10 +223,10 @@ def test_both_versions_give_the_same_numbers(machine: Path, machine_3: Path) -> 
     assert validate_fmu(str(machine)) == [] and validate_fmu(str(machine_3)) == []
 
 
-def test_the_states_are_those_of_the_plain_fmu(machine: Path, heat_fmu: Path) -> None:
+def test_the_states_are_those_of_the_plain_fmu(machine: Path, mixed_machine_3: Path, heat_fmu: Path) -> None:
     names = ["oil.T", "housing.T", "gears.P_loss"]
-    plain, uncertain = (play(path, {}, 3600.0, 60.0, record=names) for path in (heat_fmu, machine))
-    assert (plain.values == uncertain.values).all()
+    plain, *uncertain = (play(path, {}, 3600.0, 60.0, record=names) for path in (heat_fmu, machine, mixed_machine_3))
+    assert all((plain.values == other.values).all() for other in uncertain)
 
 
 def test_what_is_not_supported_is_refused(opened: Open, machine: Path) -> None:
@@ -177,12 +259,16 @@ def test_the_source_compiles_without_a_warning(machine: Path, tmp_path: Path) ->
     subprocess.run([*compiler.command, *options, tmp_path / "sources" / "all.c"], check=True)
 
 
-def test_the_page_says_what_the_deviations_contain(machine: Path) -> None:
+def test_the_page_says_what_the_deviations_contain(machine: Path, mixed: tuple[Path, Directions]) -> None:
 
     with zipfile.ZipFile(machine) as file:
         page = file.read("documentation/index.html").decode()
     assert "<td>friction</td><td><code>oil.b_0</code> +0.002 N.m.s/rad</td>" in page
     assert "serves FMI 2.0 co-simulation on every platform" in page
     assert "Not contained are the uncertainty of inputs" in page and "combinations are integrated" in page
+    assert "deviation may be far too small" in page
+    with zipfile.ZipFile(mixed[0]) as file:
+        page = file.read("documentation/index.html").decode()
+    assert "that of the mixture of the three" in page and "far too small" not in page
     with Player(machine) as player:
         assert {f"{name}.sd" for name in HEAT.shown} < set(player.described.variables)

@@ -272,8 +272,9 @@ def _print_uncertainty(found: dict[str, Any]) -> None:
     table(title, bench_uncertainty.HEAD, bench_uncertainty.rows(found))
     if found["failed"]:
         say(f"{found['failed']} of the draws have no result and are left out.")
-    cost = found["cost"]
+    plain, linear, mixture = (found["cost"][f"{way}_rhs"] for way in ("plain", "linear", "mixture"))
     say(
-        f"Four hours at 60 s from C, all outputs read: {cost['plain_rhs']:.0f} right-hand sides,"
-        f" {cost['uncertain_rhs']:.0f} with standard deviations, {cost['ratio']:.2f} times as much."
+        f"Four hours at 60 s from C, all outputs read: {plain:.0f} right-hand sides,"
+        f" {linear:.0f} with linear standard deviations ({linear / plain:.2f} times as much),"
+        f" {mixture:.0f} with those of a mixture ({mixture / plain:.2f} times)."
     )

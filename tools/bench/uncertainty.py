@@ -7,7 +7,8 @@ linear in them shows as a difference, beside what the FMU leaves out.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,22 +40,27 @@ SEED = 0
 #: Fewest draws that have a scatter, and a standard error of it.
 FEWEST = 10
 #: Of the table: deviations at the end; the largest difference, relative to the draws' scatter; its standard error.
-HEAD = ("output", "FMU", "draws", "differ by [%]", "at [min]", "error of draws [%]")
+HEAD = ("way", "output", "FMU", "draws", "differ by [%]", "at [min]", "error of draws [%]")
 #: A scatter below this part of the nominal value is none.
 NOTHING = 1e-9
 
 
-def measure(rig: str, draws: int = 10_000) -> dict[str, Any]:
+#: Ways to standard deviations.
+WAYS = ("linear", "mixture")
+
+
+def measure(rig: str, draws: int = 10_000, ways: Sequence[str] = WAYS) -> dict[str, Any]:
     """The standard deviations of the FMU and of the draws, and what a run with them costs.
 
     Args:
         rig: name or path
         draws: rows of Monte Carlo
+        ways: to the deviations, of `WAYS`
 
     Returns:
-        per output the difference of the FMU from the scatter, relative to that, at the time where it is largest, and
-        the standard error of the scatter there; the cost of a run with and without deviations in right-hand sides, each
-        taken by turns with these
+        per way and output the difference of the FMU from the scatter, relative to that, where it is largest, and the
+        standard error of the scatter there; the cost of a run without deviations and with those of each way, in
+        right-hand sides, each taken by turns with these
 
     Raises:
         ScenarioError: too few draws, nothing is uncertain, too few of the drawn rows have a result
@@ -69,14 +75,18 @@ def measure(rig: str, draws: int = 10_000) -> dict[str, Any]:
     if len(found) < max(FEWEST, draws // 2):
         raise ScenarioError(f"{scenario.name}: {len(found)} of {draws} drawn rows have a result: no scatter.")
     with tempfile.TemporaryDirectory() as folder:
-        full = export(flat, Path(folder) / "uncertain.fmu", start=start, uncertain=what)
-        names = [f"{name}.sd" for name in what.shown]
-        run = play(full, {}, DURATION, STEP, record=names, output_times=times)
-        told = {"rig": scenario.name, "draws": draws, "failed": draws - len(found)}
-        told |= {"outputs": _compare(flat, what.shown, run.values, found, times)}
         plain = export(flat, Path(folder) / "plain.fmu", start=start)
-        alone, with_them = (run_in_rhs(fmu, Path(folder) / fmu.stem) for fmu in (plain, full))
-    return told | {"cost": {"plain_rhs": alone, "uncertain_rhs": with_them, "ratio": with_them / alone}}
+        outputs, costs = [], {"plain": run_in_rhs(plain, Path(folder) / "plain")}
+        for way in ways:
+            full = export(
+                flat, Path(folder) / f"{way}.fmu", start=start, uncertain=replace(what, mixture=way == "mixture")
+            )
+            names = [f"{name}.sd" for name in what.shown]
+            run = play(full, {}, DURATION, STEP, record=names, output_times=times)
+            outputs += [{"way": way} | row for row in _compare(flat, what.shown, run.values, found, times)]
+            costs[way] = run_in_rhs(full, Path(folder) / way)
+    told = {"rig": scenario.name, "draws": draws, "failed": draws - len(found), "outputs": outputs}
+    return told | {"cost": {f"{way}_rhs": cost for way, cost in costs.items()}}
 
 
 def _draws(
@@ -130,6 +140,7 @@ def rows(found: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """The table, under `HEAD`."""
     return [
         (
+            o["way"],
             f"{o['name']} [{o['unit']}]",
             o["fmu_sd"],
             o["drawn_sd"],

@@ -11,7 +11,7 @@ import typer
 
 from ..show.console import guard
 from . import developers, diagnosis, fmu, measured, rigs, solve
-from .options import describe
+from .options import Command, describe
 
 app = typer.Typer(
     name="gearheat",
@@ -61,7 +61,7 @@ PANELS = {
 for _panel, _commands in PANELS.items():
     for _command in _commands:
         _name = _command.__name__.strip("_").replace("_", "-")
-        app.command(_name, rich_help_panel=_panel)(guard(describe(_name, _command)))
+        app.command(_name, cls=Command, rich_help_panel=_panel)(guard(describe(_name, _command)))
 
 
 #: New objects after which the collector of cycles looks through them, 700 by default: expressions are many, and few of

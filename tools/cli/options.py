@@ -11,12 +11,26 @@ from typing import Annotated, Any, TypeVar, cast, get_type_hints
 
 import gearheat as gh
 import typer
+from typer.core import TyperCommand
 
 C = TypeVar("C", bound=Callable[..., None])
 
 TEXTS: dict[str, dict[str, Any]] = tomllib.loads(
     files("gearheat.tools.cli").joinpath("options.toml").read_text("utf-8")
 )
+
+
+class Command(TyperCommand):
+    """A command some of whose options may stand without a value: the first of those under `bare` in `options.toml`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments."""
+        for about in TEXTS.get(self.name or "", {}).values():
+            values: list[str] = about.get("bare", []) if isinstance(about, dict) else []
+            for k in [k for k, text in enumerate(args) if values and text in about["flags"]][::-1]:
+                if not any(text in values for text in args[k + 1 : k + 2]):
+                    args.insert(k + 1, values[0])
+        return super().parse_args(ctx, args)
 
 
 def describe(name: str, command: C) -> C:
@@ -58,6 +72,7 @@ def _option(about: str | Mapping[str, Any], type_: Any = str) -> Any:
     """A parameter as Typer takes it."""
     told: dict[str, Any] = {"help": about} if isinstance(about, str) else dict(about)
     kind = typer.Argument if told.pop("argument", False) else typer.Option
+    told.pop("bare", None)
     if told.pop("completed", False):
         told["autocompletion"] = _rigs
     if type_ is float:

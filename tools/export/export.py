@@ -37,7 +37,7 @@ def export(
     audit: bool = True,
     parameters_source: bool = True,
     extras: str | Path | None = None,
-    uncertainty: bool = False,
+    uncertainty: bool | str = False,
     constant: Sequence[str] = (),
     real_time: str | None = None,
     ssp: Sequence[str] = (),
@@ -60,7 +60,7 @@ def export(
         audit: with two states that integrate the energy across the boundary
         parameters_source: telling where values are from
         extras: folder for parameter sets and a reference result
-        uncertainty: with standard deviations, such as oil.T.sd
+        uncertainty: with standard deviations, such as oil.T.sd: "linear" (True) or "mixture"
         constant: parameters that become constants of its code, by name, part or pattern, and stand in no file of it
         real_time: longest communication step, such as "10 ms", in which its solver takes one step without control of
             its error; what that costs at most and what it is wrong by are told
@@ -73,6 +73,8 @@ def export(
         >>> import gearheat as gh
         >>> gh.export("planetary", "planetary.fmu", fmi=3)  # doctest: +SKIP
     """
+    if uncertainty not in (False, True, "linear", "mixture"):
+        raise ScenarioError(f"--uncertainty {uncertainty}: is neither linear nor mixture.")
     told = {"--author": author, "--license": license, "--model-version": model_version}
     if wrong := [option for option, text in told.items() if not text.isprintable()]:
         raise ScenarioError([f"{option} has characters that cannot be seen. Take them out." for option in wrong])
@@ -90,7 +92,8 @@ def export(
         with_origins=parameters_source,
         fmi=fmi,
         audit=audit,
-        uncertainty=uncertainty,
+        uncertainty=bool(uncertainty),
+        mixture=uncertainty == "mixture",
         constants=constant,
         real_time=None if real_time is None else _task(real_time),
     )

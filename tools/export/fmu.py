@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from ...fmu.compiling import platforms
 from ...fmu.description import Owner
 from ...fmu.equations import effective, fix
 from ...fmu.export import export
+from ...fmu.leading import Directions
 from ...fmu.related import Related
 from ...fmu.variables import Choice, Item, drop_idle, start_choice
 from ...model.core.flat import FlatModel
@@ -25,7 +26,7 @@ from ...model.run.steady import steady
 from ...scenarios.entries import catalogue
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.console import folder, lasting, progress_bar, writable
+from ..show.console import folder, lasting, note, progress_bar, writable
 from ..show.display import Answer
 from ..show.endings import fitting
 from ..show.network import network_svg
@@ -46,6 +47,8 @@ from .real_time import RealTime, measure
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
+#: Difference of linear standard deviations from those of a mixture above which the latter are proposed.
+OFF = 0.1
 #: Kind of catalogue that fills parts with oil.
 _OIL = "oil"
 #: Source of what no file gives.
@@ -69,6 +72,7 @@ class Asked:
     fmi: int
     audit: bool
     uncertainty: bool
+    mixture: bool
     constants: Sequence[str]
     real_time: float | None
 
@@ -101,16 +105,7 @@ class Exported(Answer):
 
 def export_rig(asked: Asked) -> Exported:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
-    if asked.uncertainty and not asked.with_origins:
-        raise ScenarioError(
-            "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
-        )
-    if asked.out.suffix.lower() == ".ssp":
-        raise ScenarioError(
-            f"-o {asked.out}: a system (.ssp) has several FMUs. Say with --ssp which parts are one, or write a .fmu."
-        )
-    if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
-        raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
+    _refuse_together(asked)
     fitting(asked.out, "an FMU")
     writable(asked.out)
     lasting(asked.out)
@@ -121,7 +116,10 @@ def export_rig(asked: Asked) -> Exported:
     beside = folder(asked.extras) if asked.extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     options = asked.options | {"start": start, "fmi": asked.fmi}
-    options["uncertain"] = collect_uncertain(setting, flat) if asked.uncertainty else None
+    directions: list[Directions] = []
+    if asked.uncertainty:
+        what = collect_uncertain(setting, flat)
+        options["uncertain"] = replace(what, mixture=asked.mixture, tell=directions.append)
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     sets = sets_of_oils(setting, kept, told=asked.with_origins, hidden=hidden)
     options["others"] = Related(sets, experiment(flat, duty, run))
@@ -149,7 +147,8 @@ def export_rig(asked: Asked) -> Exported:
         "platforms": [p.name for p in chosen],
         "inputs": [q.name for q in flat.inputs],
         "outputs": [q.name for q in (*flat.states, *flat.outputs)],
-        "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if asked.uncertainty else [],
+        "deviations": [f"{name}.sd" for name in what.shown] if asked.uncertainty else [],
+        "linear_off": _judge_deviations(directions[0], asked.mixture) if directions else None,
         "parameters": [q.name for q in kept.parameters],
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
@@ -160,6 +159,34 @@ def export_rig(asked: Asked) -> Exported:
     }
     rows = [(name, kind[:-1]) for kind in ("inputs", "outputs") for name in found[kind]]
     return Exported(found, heading=f"{asked.out}: {scenario.name}", shown=(("name", "causality"), rows))
+
+
+def _refuse_together(asked: Asked) -> None:
+    """Refuse what does not go together."""
+    if asked.uncertainty and not asked.with_origins:
+        raise ScenarioError(
+            "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
+        )
+    if asked.mixture and asked.real_time is not None:
+        raise ScenarioError(
+            "--uncertainty mixture takes three steps in one, more than --real-time bounds. Take one away."
+        )
+    if asked.out.suffix.lower() == ".ssp":
+        raise ScenarioError(
+            f"-o {asked.out}: a system (.ssp) has several FMUs. Say with --ssp which parts are one, or write a .fmu."
+        )
+    if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
+        raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
+
+
+def _judge_deviations(found: Directions, mixture: bool) -> float | None:
+    """By what share linear standard deviations are off; says what to do about them."""
+    if found.off is not None and found.off > OFF and not mixture:
+        note(
+            f"standard deviations are off by up to {found.off:.0%}, as something switches in the default experiment:"
+            " repeat the command with --uncertainty mixture for better ones at three times the cost"
+        )
+    return found.off
 
 
 def write_fmu(

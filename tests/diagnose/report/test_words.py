@@ -142,7 +142,8 @@ def test_what_all_answers_of_several_causes_share_is_said_first() -> None:
     made = ambiguous(answers=answers, causes=(*causes, cause("cooling.emissivity", 0.2)), sets=())
     assert made.says.verdict == (
         "Several causes act together. In all likely answers: zero error of the torque transducer (97 %), churning of"
-        " the oil or windage (90 %). Besides: cooling by the air (70 %), cooling by radiation (20 %)."
+        " the oil or windage (90 %). More likely than not: cooling by the air (70 %). Perhaps: cooling by radiation (20"
+        " %)."
     )
 
 
@@ -190,6 +191,9 @@ def test_readings_left_out_say_whether_the_extended_rig_is_used() -> None:
     assert gain is not None
     assert "Do not use" not in explained(played=played).says.do, "0.6 K instead of 2.3 K on readings left out"
     assert "Do not use" in explained(gain=gain.model_copy(update={"rmse_after": 2.4})).says.do
+    speeds = explained().gain_grouped[0].model_copy(update={"rmse_after": 2.8})
+    said = phrases.doubt(explained(gain_grouped=(speeds,)))
+    assert "no better (each speed left out in turn 2.5 before, 2.8 K after): there do not use the extended rig" in said
 
 
 def test_plain_statistics_that_are_better_are_told() -> None:

@@ -232,7 +232,7 @@ def fitted(
         SolveError: the model cannot be run where the fit begins
     """
     look = _begun(problem, acting, z)
-    noise = problem.noise(look, scales)
+    noise = _Line(problem, look).scattered(problem.noise(look, scales))
     for _ in range(ROUNDS):
         look, cost = _settled(problem, look, noise, steps)
         before, line = noise, _Line(problem, look)

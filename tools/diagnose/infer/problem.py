@@ -13,7 +13,7 @@ import numpy as np
 from ....model.errors import SolveError
 from ..model.entries import Seen, Term, summed
 from ..model.formula import Formula
-from ..model.noise import alike, input_scatter, stacked, terms
+from ..model.noise import alike, by_name, input_scatter, terms
 from ..model.observe import Observed
 from .scales import most_likely
 
@@ -213,12 +213,9 @@ class Problem:
 
     def inputs(self, look: Look) -> list[tuple[str, np.ndarray]]:
         """Given sensor -> effects (M, rows of all campaigns) of one standard deviation of each of its readings."""
-        found: dict[str, list[tuple[int, np.ndarray]]] = {}
-        for k, (o, seen) in enumerate(zip(self.campaigns, look.seen, strict=True)):
-            for name, columns in input_scatter(o, seen):
-                found.setdefault(name, []).append((k, columns))
-        sizes = [o.m for o in self.campaigns]
-        return [(name, stacked(items, sizes)) for name, items in found.items()]
+        pairs = enumerate(zip(self.campaigns, look.seen, strict=True))
+        parts = [(name, k, columns) for k, (o, seen) in pairs for name, columns in input_scatter(o, seen)]
+        return list(by_name(parts, [o.m for o in self.campaigns]).items())
 
     def source(self, aside: Aside) -> tuple[int, str]:
         """Number of the campaign and the sensor that a reading is of."""

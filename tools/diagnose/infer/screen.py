@@ -19,11 +19,12 @@ from .problem import Acting, Problem
 FIRST = 3
 #: Start points for each further shape.
 FURTHER = 1
-#: Start points of a form at most.
+#: Start points of a form at most, but for those combinations.
 MOST = 6
 #: Start points along a threshold, whose fits may each have an optimum of their own: of physics, of instruments.
 THRESHOLDS = (6, 8)
-#: Places of a shape that mostly stands at its bound: there, between, and at the other bound.
+#: Places of a shape that mostly stands at its bound: there, between, and at the other bound. Of several such shapes all
+#: combinations.
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
 PACES = (1.0, 2.5)
@@ -99,10 +100,11 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
             points = np.zeros((len(places), d))
             points[:, shapes.index("threshold")] = places
         else:
-            points = spread(min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST), d)
-            for k_shape, shape in enumerate(formula.form.shapes):
-                if isinstance(shape, Mostly):
-                    points[:, k_shape] = np.resize(MOSTLY, len(points))
+            mostly = [isinstance(shape, Mostly) for shape in formula.form.shapes]
+            grid = list(product(MOSTLY, repeat=sum(mostly)))
+            n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
+            points = spread(max(n, len(grid)), d)
+            points[:, mostly] = np.resize(grid, (len(points), sum(mostly)))
         sizes = PACES if formula.paced else (0.0,)
         for size, u in product(sizes, points):
             found.append(Acting(formula, np.r_[size, u]))

@@ -26,7 +26,7 @@ Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]
 #: Our own, in the order of the taxonomy.
 FAMILIES: tuple[Callable[[Context], Iterable[Cause]], ...] = (
     losses.causes,
-    thermal.external_source,
+    thermal.heat_causes,
     cooling.causes,
     thermal.causes,
     instruments.causes,

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -172,13 +171,12 @@ def stacked(parts: Sequence[tuple[int, np.ndarray]], sizes: Sequence[int]) -> np
     return whole
 
 
-def tied(parts: Sequence[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
-    """Columns that several campaigns share by name: name -> effect in the whole vector (M,)."""
-    begins = np.concatenate([[0], np.cumsum(sizes)])
-    found: dict[str, np.ndarray] = {}
-    for name, k, column in parts:
-        found.setdefault(name, np.zeros(int(begins[-1])))[begins[k] : begins[k + 1]] += column
-    return found
+def by_name(parts: Iterable[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
+    """The same for all parts of a name: name -> columns in the whole vector (M, sum k)."""
+    groups: dict[str, list[tuple[int, np.ndarray]]] = {}
+    for name, k, columns in parts:
+        groups.setdefault(name, []).append((k, columns))
+    return {name: stacked(own, sizes) for name, own in groups.items()}
 
 
 def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, day: int, points: int = 0) -> list[Term]:
@@ -192,16 +190,16 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
         points: how many campaigns, the last ones, are not measured but foreseen
     """
     sizes = [o.m for o in campaigns]
-    scatter = [(name, k, v) for k, o in enumerate(campaigns) for name, v in reading_scatter(o)]
-    found = [Term(f"readings of {name}", variance=v, loose=READING) for name, v in tied(scatter, sizes).items()]
-    inputs = [(n, k, c) for k, (o, s) in enumerate(zip(campaigns, seen, strict=True)) for n, c in input_scatter(o, s)]
-    for name, items in groupby(sorted(inputs, key=lambda i: i[0]), key=lambda i: i[0]):
-        found.append(Term(f"readings of {name}", stacked([(k, c) for _, k, c in items], sizes), loose=INPUT))
-    fixed = [(n, k, c) for k, o in enumerate(campaigns) for n, c in read_tolerance(o)]
-    fixed += [(n, k, c) for k, (o, s) in enumerate(zip(campaigns, seen, strict=True)) for n, c in given_tolerance(o, s)]
-    for name, column in tied(fixed, sizes).items():
-        found.append(Term(f"tolerance of {name}", column[:, None]))
     pairs = list(enumerate(zip(campaigns, seen, strict=True)))
+    read = by_name([(name, k, v[:, None]) for k, (o, _) in pairs for name, v in reading_scatter(o)], sizes)
+    found = [Term(f"readings of {name}", variance=v.sum(axis=1), loose=READING) for name, v in read.items()]
+    inputs = [(n, k, c) for k, (o, s) in pairs for n, c in input_scatter(o, s)]
+    given = by_name(sorted(inputs, key=lambda part: part[0]), sizes)
+    found += [Term(f"readings of {name}", columns, loose=INPUT) for name, columns in given.items()]
+    fixed = [(n, k, c[:, None]) for k, (o, _) in pairs for n, c in read_tolerance(o)]
+    fixed += [(n, k, c[:, None]) for k, (o, s) in pairs for n, c in given_tolerance(o, s)]
+    tied = {name: columns.sum(axis=1, keepdims=True) for name, columns in by_name(fixed, sizes).items()}
+    found += [Term(f"tolerance of {name}", column) for name, column in tied.items()]
     days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
     found.append(Term("days", stacked(days, sizes), loose=DAY))
     found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))

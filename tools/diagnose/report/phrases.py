@@ -253,6 +253,14 @@ def doubt(findings: Findings) -> str:
         return f"{text} {useless}" if worse else ""
     if found.rmse_after >= found.rmse_before:
         return f"On readings left out the causes predict no better ({gain(found)}). {useless}"
+    worse = [
+        f"{SCHEMES.get(g.scheme, g.scheme)} {number(g.rmse_before)} before, {with_unit(g.rmse_after, g.unit)} after"
+        for g in findings.gain_grouped
+        if g.channel == found.channel and g.rmse_after > (1 + NOTICEABLE) * g.rmse_before
+    ]
+    if worse:
+        text = f"Farther from what was measured the causes predict {found.channel} no better"
+        return f"{text} ({'; '.join(worse)}): there do not use the extended rig."
     best = min(found.rivals, key=lambda name: found.rivals[name], default="")
     if best and found.rivals[best] < found.rmse_after:
         rival, after = number(found.rivals[best]), with_unit(found.rmse_after, found.unit)

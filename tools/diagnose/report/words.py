@@ -21,6 +21,8 @@ TOO_GOOD = 0.99
 SCATTER = 1.5
 #: Answers beside the first two are listed from this probability on.
 LISTED = 0.05
+#: Of several causes those act that have more.
+LIKELY = 0.5
 #: Longest list on the first screen.
 MOST = 6
 #: The same of lists of little weight.
@@ -115,7 +117,7 @@ def _claim(findings: Findings) -> str:
 
 
 def _together(findings: Findings) -> str:
-    """What acts together: the causes that all answers share first, then the others by how probable they are."""
+    """What acts together: the causes that all answers share first, then those more likely than not, then others."""
     answers = [a for a in findings.answers if a.causes != ((UNEXPLAINED,),)]
     classes = {group[0]: set(group) for a in reversed(answers) for group in reversed(a.causes)}
     chances = {c: sum(one.probability for m in own if (one := findings.cause(m))) for c, own in classes.items()}
@@ -127,13 +129,13 @@ def _together(findings: Findings) -> str:
         )
 
     shared = [c for c, own in classes.items() if all(any(own & set(group) for group in a.causes) for a in answers)]
-    others = names(c for c in classes if c not in shared)
-    text = f"Several causes act together. In all likely answers: {names(shared)}." if shared else ""
-    if others:
-        text += (
-            f" {'Besides' if shared else 'Several causes act together, and none is in all likely answers'}: {others}."
-        )
-    return text.strip()
+    others = [c for c in classes if c not in shared]
+    groups = {
+        "In all likely answers": names(shared),
+        "More likely than not": names(c for c in others if chances[c] >= LIKELY),
+        "Perhaps": names(c for c in others if chances[c] < LIKELY),
+    }
+    return " ".join(["Several causes act together.", *(f"{words}: {own}." for words, own in groups.items() if own)])
 
 
 def _left_open(findings: Findings, first: Answer) -> str:
