@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from gearheat.model.errors import GearheatError
 from gearheat.scenarios.duty import read_duty
 from gearheat.scenarios.load import RIGS, load
 from gearheat.scenarios.measured.card import Card, read_card
@@ -16,9 +18,11 @@ from gearheat.scenarios.measured.logs import read_log
 from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.cli.app import app
 from gearheat.tools.export.export import export
 from gearheat.tools.solve.settings import adjust
 from gearheat.tools.solve.sweep_plan import Request, plan_sweep
+from typer.testing import CliRunner
 
 Table = list[list[str]]
 ROWS = 24
@@ -104,10 +108,24 @@ def to_export(folder: Path, line: str) -> None:
     export("planetary", folder / options.pop("out", "rig.fmu"), **options)
 
 
+def to_output(folder: Path, line: str) -> None:
+    """What is typed behind `gearheat`, in a folder with a duty, a file and a folder."""
+    (folder / "folder").mkdir(exist_ok=True)
+    written(folder, "file", "")
+    written(folder, "duty.csv", "time [s],carrier.w [rpm]\n0,250\n60,250\n")
+    with chdir(folder):
+        answer = CliRunner().invoke(app, line.split())
+    if answer.exception is not None and not isinstance(answer.exception, SystemExit):
+        raise answer.exception
+    if answer.exit_code == 2:
+        raise GearheatError(answer.stderr)
+
+
 READERS: dict[str, Callable[[Path, str], object]] = {
     "set": lambda folder, line: adjust(rig(), [line]),
     "vary": lambda folder, line: plan_sweep(Request("planetary", [line], sample=4)),
     "export": to_export,
+    "output": to_output,
     "duty": lambda folder, line: read_duty(written(folder, "duty.csv", unescaped(line)), rig().inputs()),
     "rig": read_rig,
     "card": read_with_card,

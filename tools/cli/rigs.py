@@ -11,6 +11,7 @@ from typing import Any
 import gearheat as gh
 
 from ..show import console
+from ..show.endings import fitting
 from ..show.notes import PLURAL, print_outside, print_stacked, print_unchecked
 
 
@@ -80,6 +81,7 @@ def schema(
     out: Path | None = None,
 ) -> None:
     """JSON schema of rig files: editors complete and check them with it."""
+    fitting(out, "a schema")
     text = console.as_json(gh.schema())
     if out is None:
         print(text, end="")

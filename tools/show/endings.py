@@ -11,6 +11,7 @@ ENDINGS = {
     "a table": (".csv", ".txt", ".dat", ""),
     "an FMU": (".fmu", ".ssp", ".zip", ""),
     "a page": (".html", ".htm", ""),
+    "a schema": (".json", ""),
 }
 #: Endings that tell another kind of file than these.
 KNOWN = frozenset(
