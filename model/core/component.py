@@ -159,6 +159,8 @@ class Component:
 
     def _derive(self) -> list[LawUse]:
         """Put expressions in the place of the parameters that follow from others; the laws they use."""
+        if not self.derived:
+            return []
         own = [self.symbols[key] for key in self.derived]
         with recording() as uses:
             found = [as_expression(d.derived(self)) for d in self.derived.values() if d.derived is not None]

@@ -89,6 +89,8 @@ def _without_idle(assembly: Assembly, rows: Sequence[Equation], unknowns: Sequen
     """The unknowns without what ports bring that may stay open, do so, and are read under no choice of their part."""
     ports = [net[0] for net in nets(assembly) if len(net) == 1 and not net[0].needed and not type(net[0]).flows()]
     open_ends = {f"{port.name}.{name}" for port in ports for name in type(port).potentials()}
+    if not open_ends:
+        return list(unknowns)
     read = {s.element_hash() for s in ca.symvar(column([side for r in rows for side in (r.lhs, r.rhs)]))}
     return [u for u in unknowns if u.name not in open_ends or u.symbol.element_hash() in read]
 

@@ -2,9 +2,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from gearheat.model.errors import DataError
+from gearheat.scenarios.measured.logs import Log
+from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.compare.errors import compare, noise_floor, repeats, rivals
+from gearheat.tools.compare.replay import Rivals
 
 DRIVES = ("n_carrier_rpm", "T_carrier_Nm")
 
@@ -130,3 +134,18 @@ def test_constant_alpha_a_is_power_over_rise(rows):
     assert 1 / score.coefficients["T_oil_K"][0] == pytest.approx(15.9)
     assert score.coefficients["loss_Nm"][0] == pytest.approx(0.012)
     assert score.in_sample["T_wall_K"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_rival_of_one_node_finds_a_body_that_is_one():
+    """In two stretches that begin in balance; a tenth of its readings is missing, and one input stands still."""
+    rng, n, names, decay = np.random.default_rng(0), 800, ("a", "b", "c"), 0.93
+    u = np.column_stack([rng.uniform(0.0, 50.0, n), rng.uniform(0.0, 20.0, n), np.full(n, 3.0)])
+    drive, stretch, true = u @ (0.4, -0.05, 0.0) + 18.0, np.arange(n) // 500, np.empty(n)
+    for k in range(n):
+        true[k] = decay * true[k - 1] + drive[k] if k % 500 else drive[k] / (1 - decay)
+    read = np.where((rng.random(n) < 0.1) & (np.arange(n) % 500 > 0), np.nan, true)
+    sensors = tuple(Sensor(name, name, f"{name}.T", "wall_temp", "given", "K", 0.1, 0.1) for name in (*names, "y"))
+    values = dict(zip((*names, "y"), (*u.T, read), strict=True))
+    log = Log("made", sensors, values, 600.0 * np.arange(n), stretch, 600.0, np.arange(n), dated=False)
+    rival = Rivals(log, names, ["y"])
+    assert rival.one_node(rival.node[0], u[500:], true[500]) == pytest.approx(true[500:], abs=0.01)
