@@ -10,6 +10,8 @@ import sys
 from contextlib import suppress
 
 INTERRUPTED = 130
+#: Linear algebra uses one thread: matrices here are small, and more threads only wait for each other.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 #: Objects until Python looks for circles of them that nothing uses: parts and equations of a rig are used to the end.
 COLLECT = (100_000, 50, 1000)
 
@@ -24,6 +26,8 @@ def _leave(*_: object) -> None:
 def main() -> None:
     """Entry point of the program."""
     gc.set_threshold(*COLLECT)
+    for name in THREADS:  # before anything loads numpy
+        os.environ.setdefault(name, "1")
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _leave)  # while the program loads; there is nothing yet to be tidied up
     for name in ("stdout", "stderr"):

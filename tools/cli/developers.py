@@ -32,8 +32,6 @@ def bench(
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
     asked |= {"scale": scale, "watch": watch, "page": page}
-    if contact or watch or page:
-        console.use_one_thread()
     from ..bench import bench
 
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)
@@ -65,7 +63,6 @@ def film(
     json: str | None = None,
 ) -> None:
     """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
-    console.use_one_thread()
     console.writable(console.file_of(json))
     films = gh.film(rig, out, part=part, vary=vary or [], grid=grid, nodes=nodes, plot=plot, set=set_ or [])
     console.answer(films.as_dict(), json, lambda: print_films(films))
@@ -93,7 +90,6 @@ def verify_contact(
     json: str | None = None,
 ) -> None:
     """Check the contact solver against published films, Hertz and measurements."""
-    console.use_one_thread()
     found = gh.verify_contact(out, quick=quick, cycle=cycle)
     console.answer(found.as_dict(), json, lambda: console.table(found.title, *found.table()))
 

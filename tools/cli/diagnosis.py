@@ -38,7 +38,6 @@ def diagnose(
     plot: Path | None = None,
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
-    console.use_one_thread()
     console.writable(live)
     console.plottable(plot)
     outputs = gh.Outputs(predictions, json, report, extended)
@@ -83,7 +82,6 @@ def plan(
     json: str | None = None,
 ) -> None:
     """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
-    console.use_one_thread()
     causes = [name for name in map(str.strip, separate.split(",")) if name]
     found = gh.plan(
         rig, separate=causes, card=card, points=points, library=library, reference=reference, json=json, out=out
@@ -143,7 +141,6 @@ def campaign(
     json: str | None = None,
 ) -> None:
     """A campaign that others published: checks the files you downloaded, writes card and tables, and diagnoses them."""
-    console.use_one_thread()
     made = gh.campaign(name, folder, out, case=case)
     known = made.as_dict()
     console.note(f"{made.title}. {known['source']}; {known['licence']}. Known: {known['known']}")

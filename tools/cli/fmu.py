@@ -107,7 +107,6 @@ def desk(
     browser: bool = True,
 ) -> None:
     """The commands by clicks: a local web app for tables and diagnoses, rigs of your own, maps and comparisons."""
-    console.use_one_thread()
     from ..desk import serve
 
     serve(out, port, browser=browser)

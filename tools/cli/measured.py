@@ -130,7 +130,6 @@ def watch(
     json: str | None = None,
 ) -> None:
     """Follow logs while they grow: predicted temperatures, whether something has changed, what, and since when."""
-    console.use_one_thread()
     with event_lines.opened(json) as out:
         events = gh.watch(
             rig,

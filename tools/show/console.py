@@ -144,12 +144,6 @@ def counting(things: str, total: int, done: int = 0) -> Iterator[Callable[[int],
         yield advance
 
 
-def use_one_thread() -> None:
-    """Let linear algebra use one thread: matrices here are small, and more threads only wait for each other."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
-
-
 def plain(value: Any) -> Any:
     """A value as JSON can hold it: arrays as lists, numbers that are not finite as null."""
     if isinstance(value, Mapping):

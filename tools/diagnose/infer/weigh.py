@@ -30,10 +30,9 @@ LOOKS = 4
 FITTED = 10
 #: Nats behind the likeliest set within which they are fitted.
 WITHIN = 8.0
-#: Causes fitted alone: a large effect bends, and its cause may explain more than it promises to first order.
-ALONE = 10
-#: The same where nothing looks wrong.
-QUIET_ALONE = 4
+#: Causes fitted alone where the rig is calibrated, and where the file has it: a large effect bends, and its cause may
+#: explain more than it promises to first order.
+ALONE = (4, 10)
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
 #: p of any cause above which little is fitted.
@@ -148,8 +147,8 @@ class Weighing:
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
-                if k == min(1, looks - 1):
-                    self._fit_alone(near, look)
+                if k < len(ALONE):
+                    self._fit_alone(near, look, ALONE[k])
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
@@ -209,9 +208,8 @@ class Weighing:
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
-    def _fit_alone(self, near: Fit, look: screen.Look) -> None:
+    def _fit_alone(self, near: Fit, look: screen.Look, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        n = ALONE if self.p_any < QUIET else QUIET_ALONE
         for start, logs in self._promising(look, set(), n, self.options.wanted):
             beside = (frozenset[str](), self.problem.aside)
             self._fit_joined(near, self.problem, start, beside, {start.acting.id: logs})
