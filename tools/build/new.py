@@ -17,6 +17,7 @@ from ...scenarios.entries import catalogue
 from ...scenarios.load import load as read_rig
 from ..describe.rig import Rig
 from ..show.console import writable, write
+from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions
 from .plausible import WARM, no_load, notes, usual
@@ -104,6 +105,7 @@ def new(
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml" if out is None else Path(out)
+        fitting(path, "a rig file")
         writable(path)
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")

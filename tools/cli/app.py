@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import sys
 from importlib.util import find_spec
 from typing import Annotated
@@ -64,14 +63,8 @@ for _panel, _commands in PANELS.items():
         app.command(_name, cls=Command, rich_help_panel=_panel)(guard(describe(_name, _command)))
 
 
-#: New objects after which the collector of cycles looks through them, 700 by default: expressions are many, and few of
-#: them in cycles. A network of 1000 nodes is flattened in four fifths of the time.
-LOOK_AFTER = 100_000
-
-
 def program() -> None:
     """Run the command line. A named command stands alone: to read all options takes long. `docs` runs others."""
     named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name] != ["docs"]]
     app.registered_commands = named or app.registered_commands
-    gc.set_threshold(LOOK_AFTER)
     app()

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 from ..show import console
+from ..show.endings import fitting
 
 #: Exit code where a number is not reproduced.
 FAILED = 1
@@ -63,7 +64,6 @@ def film(
     json: str | None = None,
 ) -> None:
     """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
-    console.writable(console.file_of(json))
     films = gh.film(rig, out, part=part, vary=vary or [], grid=grid, nodes=nodes, plot=plot, set=set_ or [])
     console.answer(films.as_dict(), json, lambda: print_films(films))
 
@@ -74,7 +74,8 @@ def verify(
     html: Path | None = None,
 ) -> None:
     """Published numbers of each machine beside what the model gives."""
-    console.writable(console.file_of(json), html)
+    fitting(html, "a page", "--html")
+    console.writable(html)
     numbers = gh.verify(rig, draw=gh.new)
     if html is not None:
         numbers.report(html)

@@ -38,7 +38,7 @@ def export(
     json: str | None = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     written = gh.export(
         extended or rig,
         out,
@@ -76,7 +76,7 @@ def page(
 ) -> None:
     """Write the machine as one HTML file that computes in any browser, without a server or a network."""
     fitting(out, "a page")
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     made = gh.page(rig, set=set_ or [], more=with_ or [], limit=limit, data=data, extended=extended or ())
     made.save(out)
     found = made.as_dict() | {"out": str(out)}
@@ -95,7 +95,7 @@ def play(
 ) -> None:
     """Play an FMU over a duty cycle."""
     fitting(out, "a table")
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     console.plottable(plot)
     run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)
     print_run(run, out, plot, json)

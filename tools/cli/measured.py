@@ -30,7 +30,7 @@ def run(
     json: str | None = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
-    console.writable(live, console.file_of(json))
+    console.writable(live)
     done = gh.run(rig, out, tests=tests, step=step, set=set_ or [], jobs=jobs, extended=extended, data=data, card=card)
     if live is not None:
         gh.page(rig, set=set_ or [], extended=[extended] if extended else ()).save(live, report=out / "report.html")

@@ -47,7 +47,7 @@ def simulate(
 ) -> None:
     """Temperatures and losses over a duty cycle."""
     fitting(out, "a table")
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     console.plottable(plot)
     run = gh.simulate(rig, duty, set_ or [])
     print_run(run, out, plot, json)
@@ -90,7 +90,7 @@ def sweep(
     json: str | None = None,
 ) -> None:
     """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     console.plottable(plot)
     rows = gh.sweep(
         rig,
@@ -128,7 +128,7 @@ def map_(
 ) -> None:
     """Oil temperature, loss and efficiency over speed and torque: table and picture."""
     fitting(out, "a table")
-    console.writable(out, console.file_of(json))
+    console.writable(out)
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
     if out is not None:
@@ -150,7 +150,7 @@ def rating(
 ) -> None:
     """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
     fitting(out, "a table")
-    console.writable(out, live, console.file_of(json))
+    console.writable(out, live)
     powers = gh.rating(rig, limit, room=room, speed=speed, grid=grid, set=set_ or [])
     if out is not None:
         powers.save(out)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,9 +18,12 @@ from ...scenarios.measured.series import read_samples, series_of
 from ...scenarios.measured.table import Campaign
 from ...scenarios.scenario import Scenario
 from ..show.console import writable
+from ..show.endings import fitting
 
 T = TypeVar("T")
 
+#: What is written by options of a diagnosis.
+WRITTEN = {"--json": "JSON", "--report": "a page", "--extended": "a rig file", "--predictions": "a table"}
 #: Causes that may be looked for together.
 MOST = 8
 #: What the user should know of a series that has nothing to be compared with.
@@ -214,6 +218,8 @@ class _Reader:
         self.card = self._try(lambda: read_card(card)) if card is None or card.is_file() else None
         self.scenario = self._try(lambda: scenario_of(request.rig))
         self._try(lambda: writable(*written.values()))
+        for option in sorted(WRITTEN.keys() & written):
+            self._try(partial(fitting, written[option], WRITTEN[option], option))
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""

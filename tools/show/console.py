@@ -24,6 +24,7 @@ from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
 from ...model.units import refuse_comma
+from . import endings
 from .ending import INTERRUPTED, SAID
 
 P = ParamSpec("P")
@@ -82,7 +83,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def _apart(options: Mapping[str, Any]) -> None:
-    """Refuse two outputs of a command in one file, of which one would be lost."""
+    """Refuse, before any work, two outputs of a command in one file, and JSON that cannot be written."""
     named = {name: options.get(name) for name in OUTPUTS}
     first: dict[str, str] = {}
     for name, path in named.items():
@@ -90,6 +91,9 @@ def _apart(options: Mapping[str, Any]) -> None:
             other = first.setdefault(os.path.realpath(path), name)
             if other != name:
                 raise ScenarioError(f"--{other} and --{name} both name {path}. Give each output a file of its own.")
+    if isinstance(asked := options.get("json"), str):
+        endings.fitting(file_of(asked), "JSON", "--json")
+        writable(file_of(asked))
 
 
 def _silence() -> None:

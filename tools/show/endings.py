@@ -12,6 +12,8 @@ ENDINGS = {
     "an FMU": (".fmu", ".ssp", ".zip", ""),
     "a page": (".html", ".htm", ""),
     "a schema": (".json", ""),
+    "JSON": (".json", ""),
+    "a rig file": (".toml", ""),
 }
 #: Endings that tell another kind of file than these.
 KNOWN = frozenset(
@@ -37,15 +39,17 @@ KNOWN = frozenset(
 )
 
 
-def fitting(path: Path | None, kind: str) -> None:
+def fitting(path: Path | None, kind: str, option: str = "-o") -> None:
     """Refuse a name that says another kind of file than is written.
 
     Args:
         path: where it goes
         kind: what is written, a key of `ENDINGS`
+        option: that names it
 
     Raises:
         DataError: its ending is that of something else
     """
     if path is not None and (ending := path.suffix.lower()) in KNOWN and ending not in ENDINGS[kind]:
-        raise DataError(f"-o {path}: {kind} is written, and {ending} is something else. Name it *{ENDINGS[kind][0]}.")
+        what = f"{kind} is written, and {ending} is something else. Name it *{ENDINGS[kind][0]}."
+        raise DataError(f"{option} {path}: {what}")
