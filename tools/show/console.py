@@ -51,7 +51,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
             with keep_inputs():
-                _apart(kwargs)
+                _early(kwargs)
                 command(*args, **kwargs)
             sys.stdout.flush()
         except GearheatError as error:
@@ -82,7 +82,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
     return run
 
 
-def _apart(options: Mapping[str, Any]) -> None:
+def _early(options: Mapping[str, Any]) -> None:
     """Refuse, before any work, two outputs of a command in one file, and JSON that cannot be written."""
     named = {name: options.get(name) for name in OUTPUTS}
     first: dict[str, str] = {}
