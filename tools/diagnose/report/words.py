@@ -125,7 +125,8 @@ def _together(findings: Findings) -> str:
     def names(causes: Iterable[str]) -> str:
         ranked = sorted((c for c in causes if chances[c] >= LISTED), key=lambda c: -chances[c])
         return ", ".join(
-            f"{names_of(sorted(classes[c], key=c.__ne__), 'or')} ({phrases.percent(chances[c])})" for c in ranked
+            f"{names_of(sorted(classes[c], key=lambda m: (m != c, m)), 'or')} ({phrases.percent(chances[c])})"
+            for c in ranked
         )
 
     shared = [c for c, own in classes.items() if all(any(own & set(group) for group in a.causes) for a in answers)]
