@@ -54,7 +54,7 @@ COMMANDS = {
 
 
 #: Files that hold what is done so far, for the next run to go on.
-GROWING = {"film": "out.csv.part"}
+GROWING = {"film": "out.csv.part", "sweep": "out.csv.part"}
 
 
 @dataclass(frozen=True)
