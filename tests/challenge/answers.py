@@ -15,6 +15,7 @@ from typing import Any
 
 import gearheat
 from gearheat.model.errors import DataError
+from gearheat.tools.cli.__main__ import THREADS
 
 from .classes import classes_of
 
@@ -35,9 +36,6 @@ main()
 
 #: Longest time for one case [s]: a hundred times the usual one.
 TIMEOUT = 1800.0
-
-#: Variables that tell linear algebra how many threads to use.
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 #: What stands in a hypothesis for effects without a name.
 UNNAMED = frozenset({"model.unexplained"})

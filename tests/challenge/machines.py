@@ -297,7 +297,6 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
             continue
         break
     sd = np.array([s.repeat_sd for s in machine.sensors])
-    sd = np.array([s.repeat_sd for s in machine.sensors])
     offsets = np.array([s.offset_sd for s in machine.sensors]) * rng.standard_normal(len(sd))
     noisy = shown + offsets + sd * rng.standard_normal(shown.shape)
     _write(case / "DATA.csv", machine.sensors, noisy)
