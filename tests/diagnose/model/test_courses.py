@@ -13,9 +13,9 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import PLACES, Campaign, Course, Series
-from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.problem import Problem
+from gearheat.tools.diagnose.infer.screen import screened
 from gearheat.tools.diagnose.model import march
 from gearheat.tools.diagnose.model.formula import Formula
 from gearheat.tools.diagnose.model.noise import terms
@@ -81,7 +81,8 @@ def measured(prepared: Setting):
 def log_bf(s: Setting, campaign: Campaign) -> dict[str, float]:
     """Log Bayes factor of the best form of each cause at the first look."""
     problem = Problem([observed(s, campaign)], 0.015)
-    found = screen.look(problem, fitted(problem, (), np.zeros(problem.nz)), s.formulas).by_form(len(s.formulas))
+    null = fitted(problem, (), np.zeros(problem.nz))
+    found = screened(problem, null.look, null.views(problem), s.formulas).by_form(len(s.formulas))
     best: dict[str, float] = {}
     for f, log in zip(s.formulas, found, strict=True):
         best[f.cause.id] = max(best.get(f.cause.id, -np.inf), float(log))

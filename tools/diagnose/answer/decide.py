@@ -9,9 +9,9 @@ import numpy as np
 from scipy.stats import chi2
 
 from ..infer.evidence import White
-from ..infer.found import Found, Hypothesis
+from ..infer.found import Found, Hypothesis, Member
 from ..infer.prior import OUTSIDE
-from ..infer.screen import limits
+from ..infer.problem import limits
 from .findings import UNEXPLAINED, Verdict
 
 #: Probability from which one answer explains the data, and that several together reach.
@@ -26,8 +26,6 @@ INVISIBLE = 1.0
 #: A nuisance or tolerance whose prior is wider than this many standard deviations of the readings counts as fitted.
 FREE = 0.5
 
-#: A hypothesis and its probability.
-Member = tuple[Hypothesis, float]
 #: The classes of causes that act together, in order; none: nothing is wrong.
 Key = tuple[str, ...]
 

@@ -12,8 +12,7 @@ from scipy.linalg import block_diag
 
 from ..infer.evidence import White
 from ..infer.found import Found
-from ..infer.problem import Acting, Look, Noise, Problem
-from ..infer.screen import limits
+from ..infer.problem import Acting, Look, Noise, Problem, limits
 from ..model.entries import Seen
 from ..model.noise import terms
 from ..model.observe import Observed

@@ -11,13 +11,11 @@ from scipy.stats import norm
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit
-from ..infer.found import Found, Hypothesis
-from ..infer.problem import Acting, Problem
-from ..infer.screen import limits
+from ..infer.found import Found, Hypothesis, Member
+from ..infer.problem import Acting, Problem, limits
 from ..library.cause import Form, Shape, Size
 from ..model.observe import Observed
 from . import channels, findings
-from .decide import Member
 from .evidence import Bound, Estimate
 
 #: Changes of the loss by name, with their units.

@@ -11,7 +11,7 @@ from ....model.core.faults import name_all
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found, Hypothesis
-from ..infer.screen import limits
+from ..infer.problem import limits
 from . import channels
 from .estimate import loose_variance
 from .evidence import Picture, Rows, View

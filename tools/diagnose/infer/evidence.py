@@ -63,6 +63,18 @@ class White:
         return float(-0.5 * e @ e - 0.5 * self.log_det)
 
 
+@dataclass(frozen=True)
+class View:
+    """Whitening by all that is uncertain, the residual in it, the log of its density over that as found, and how much
+    of it is the prior of the scatter's scales.
+    """
+
+    white: White
+    e: np.ndarray
+    log: float = 0.0
+    prior: float = 0.0
+
+
 def log_bayes_factors(
     s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray = WIDTHS
 ) -> np.ndarray:

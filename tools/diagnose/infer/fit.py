@@ -11,7 +11,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ....model.errors import SolveError
-from .evidence import WIDTHS, White, log_bayes_factor
+from .evidence import WIDTHS, View, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
 #: Steps at most.
@@ -34,26 +34,12 @@ LONGEST = 1.5
 LONGEST_SIZE = 1.0
 #: A shape.
 LONGEST_SHAPE = 0.8
-#: Shapes stay inside so many deviations.
-FAR = 2.4
 #: A scale whose logarithm is beyond this has grown.
 GROWN = 0.2
 #: Share of the variance of what a form leaves that all channels have together; each has the rest for itself.
 TOGETHER = 0.5
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
 FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
-
-
-@dataclass(frozen=True)
-class View:
-    """Whitening by all that is uncertain, the residual in it, the log of its density over that as found, and how much
-    of it is the prior of the scatter's scales.
-    """
-
-    white: White
-    e: np.ndarray
-    log: float = 0.0
-    prior: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -124,14 +110,6 @@ class Fit:
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
 
 
-@dataclass(frozen=True)
-class Start:
-    """A cause about to join a fit, and its effect (M,) to first order."""
-
-    acting: Acting
-    effect: np.ndarray
-
-
 def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
     """Of the vector's entries by their priors, sizes by the widest."""
     return _Vector(problem, acting).precision
@@ -149,20 +127,6 @@ def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
     return rough
 
 
-def bounds(acting: Acting) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest parameters of a form."""
-    low, high = acting.formula.limits
-    n = acting.formula.size - 1
-    return np.r_[low, np.full(n, -FAR)], np.r_[high, np.full(n, FAR)]
-
-
-def started(acting: Acting, size: float) -> Acting:
-    """A cause where its fit begins: not too near to zero, inside its bounds."""
-    low, high = bounds(acting)
-    size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
-    return replace(acting, t=np.r_[size if abs(size) > 0.1 else least, acting.t[1:]])
-
-
 class _Vector:
     """The vector of a problem and some causes: priors, bounds and longest steps."""
 
@@ -177,7 +141,7 @@ class _Vector:
         self.sizes: list[int] = []
         begin = self.nz
         for a in acting:
-            a_low, a_high = bounds(a)
+            a_low, a_high = a.bounds
             low.append(a_low)
             high.append(a_high)
             n = a.formula.size - 1

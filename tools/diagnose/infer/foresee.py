@@ -13,7 +13,6 @@ import numpy as np
 
 from ....model.errors import SolveError
 from ..model.formula import Formula
-from . import screen
 from .evidence import split_error
 from .fit import Fit, prior_precision
 from .found import Extra
@@ -64,7 +63,7 @@ def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, opt
     own.fit_sets(found, own.null, 0.0, 1)
     if (near := own.leader().fit) is not own.null:
         with suppress(SolveError):
-            found = own.search(near, screen.look(own.problem, near, own.formulas), STAGE, 0.0)
+            found = own.search(near, own.screened(near, own.problem), STAGE, 0.0)
             linear = own.linear
             own.fit_sets(found, near, 0.0, 1)
     logs = np.array([s.log for s in found])

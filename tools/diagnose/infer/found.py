@@ -9,10 +9,10 @@ import numpy as np
 
 from ..model.entries import Term
 from ..model.formula import Formula
-from . import screen
 from .fit import Fit
 from .prior import Prior
 from .problem import Aside, Problem
+from .screen import Screen
 
 #: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
 Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
@@ -69,6 +69,10 @@ class Hypothesis:
         return next(a.formula.form.name for a in self.fit.look.acting if a.id == cause)
 
 
+#: A hypothesis and its probability.
+Member = tuple[Hypothesis, float]
+
+
 def with_forms(hypotheses: Mapping[Key, Hypothesis]) -> list[Hypothesis]:
     """Hypotheses of any forms; forms that were not fitted count with the best of those that differ in forms alone."""
     alike: dict[tuple[object, ...], list[Hypothesis]] = {}
@@ -93,7 +97,7 @@ class Found:
     Args:
         formulas: all forms, those of spreads last
         null: the fit without a cause
-        first: all causes at a first look
+        first: all causes beside none
         hypotheses: all that were fitted, most probable first
         probabilities: of them
         p_any: p of the log Bayes factor of any cause
@@ -106,7 +110,7 @@ class Found:
     problem: Problem
     formulas: tuple[Formula, ...]
     null: Fit
-    first: screen.Look
+    first: Screen
     hypotheses: tuple[Hypothesis, ...]
     probabilities: np.ndarray
     p_any: float

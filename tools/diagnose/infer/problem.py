@@ -19,6 +19,8 @@ from .scales import most_likely
 
 #: Half widths of its prior to which a cause is followed.
 OUT = 2.0
+#: Shapes stay inside so many deviations.
+FAR = 2.4
 
 
 @dataclass(frozen=True, order=True)
@@ -43,6 +45,25 @@ class Acting:
     def id(self) -> str:
         """Of the cause."""
         return self.formula.cause.id
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest parameters."""
+        low, high = self.formula.limits
+        far = np.full(self.formula.size - 1, FAR)
+        return np.r_[low, -far], np.r_[high, far]
+
+    def started(self, size: float) -> Acting:
+        """The same where its fit begins: not too near to zero, inside its bounds."""
+        low, high = self.formula.limits
+        size, least = float(np.clip(size, low, high)), 0.1 if high > 0.1 else -0.1
+        return replace(self, t=np.r_[size if abs(size) > 0.1 else least, self.t[1:]])
+
+
+def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest sizes of candidates, in prior half widths (k,)."""
+    low, high = np.array([c.formula.limits for c in candidates]).reshape(-1, 2).T
+    return low, high
 
 
 @dataclass(frozen=True)

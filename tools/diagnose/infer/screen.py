@@ -11,9 +11,8 @@ from scipy.special import ndtri
 
 from ..library.cause import Mostly
 from ..model.formula import Formula
-from .evidence import log_bayes_factors
-from .fit import Fit, Start, View, started
-from .problem import Acting, Problem
+from .evidence import View, log_bayes_factors
+from .problem import Acting, Look, Problem, limits
 
 #: Start points of a form for its first shape, beside the one in the middle.
 FIRST = 3
@@ -37,7 +36,15 @@ DRAWS = 500
 
 
 @dataclass(frozen=True)
-class Look:
+class Start:
+    """A cause about to join a fit, and its effect (M,) to first order."""
+
+    acting: Acting
+    effect: np.ndarray
+
+
+@dataclass(frozen=True)
+class Screen:
     """All forms of all causes at one linearisation.
 
     Args:
@@ -77,7 +84,7 @@ class Look:
         """Where a fit of a formula begins: at the best of its candidates."""
         own = np.flatnonzero(self.owner == formula)
         k = int(own[np.argmax(self.log_bf[own])])
-        acting = started(self.candidates[k], self.sizes[k])
+        acting = self.candidates[k].started(self.sizes[k])
         return Start(acting, acting.t[0] * self.effects[:, k])
 
 
@@ -129,12 +136,18 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
-    """What every form would explain beside a fitted hypothesis."""
+def screened(problem: Problem, near: Look, views: Sequence[View], formulas: Sequence[Formula]) -> Screen:
+    """What every form would explain beside a fitted hypothesis.
+
+    Args:
+        problem: data and model
+        near: where it was fitted
+        views: the problem linearised there, by scatter as found and as stated
+        formulas: forms of causes
+    """
     candidates, owner = samples(formulas, changes(problem))
-    effects = problem.tangents(fit.look.z, fit.look.acting, candidates)
+    effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    views = fit.views(problem)
     far = list(bent(problem, formulas, views[0]))
     middle = np.searchsorted(owner, number := np.array([k for k, _, _ in far], dtype=int))
     bends = np.array([bend for _, _, bend in far]).reshape(len(far), problem.m).T
@@ -154,7 +167,7 @@ def bent(problem: Problem, formulas: Sequence[Formula], view: View) -> Iterator[
                 yield k, acting, bend
 
 
-def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Look:
+def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Screen:
     """Effects weighed against a whitened residual, by scatter as found or as stated."""
     low, high = limits(candidates)
     white = [view.white(effects) for view in views]
@@ -165,20 +178,14 @@ def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarra
         sizes.append(np.clip(s / (q + 0.1), low, high))
     best = np.argmax(logs, axis=0)
     log_bf = np.logaddexp.reduce(logs, axis=0) - np.log(len(views))
-    return Look(candidates, owner, effects, white[0], tuple(views), log_bf, np.choose(best, sizes))
+    return Screen(candidates, owner, effects, white[0], tuple(views), log_bf, np.choose(best, sizes))
 
 
-def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest sizes of candidates, in prior half widths (k,)."""
-    low, high = np.array([c.formula.limits for c in candidates]).reshape(-1, 2).T
-    return low, high
-
-
-def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
+def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
     """Log Bayes factors of any cause against none on data of the null (draws,).
 
     Args:
-        found: a look at the null
+        found: all causes beside none
         weights: log prior weight of each candidate, all together 1
         seed: of the draws
     """

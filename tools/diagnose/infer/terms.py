@@ -9,11 +9,8 @@ import numpy as np
 
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
-from .evidence import WIDTHS
-from .fit import Fit
 from .prior import GROSS, OUTSIDE, Prior
-from .problem import Acting, Aside, Problem
-from .screen import Look, limits
+from .problem import Acting, Aside, Look, Problem
 
 #: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
 SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
@@ -66,27 +63,12 @@ class Term:
         return f"{self.name}: {form}" if form else self.name
 
 
-def sizes(look: Look, prior: Prior) -> Iterator[Term]:
-    """The candidates of a look.
-
-    Args:
-        look: effects of all forms of all causes
-        prior: of causes
-    """
-    low, high = limits(look.candidates)
-    shares = look.weights + [prior.share[c.id] for c in look.candidates]
-    for k, c in enumerate(look.candidates):
-        cause = c.formula.cause
-        column = look.effects[:, [k]]
-        yield Term(cause.id, cause.family, float(shares[k]), column, WIDTHS, low[k], high[k], c, c.formula)
-
-
-def spreads(problem: Problem, fit: Fit, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:
+def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:
     """Causes drawn anew in each test or mounting, or wandering from test to test."""
     if not formulas:
         return
     own = [Acting(f, np.r_[float(f.paced), np.zeros(f.size - 1)]) for f in formulas]
-    effects = problem.tangents(fit.look.z, fit.look.acting, own)
+    effects = problem.tangents(look.z, look.acting, own)
     for formula, effect in zip(formulas, effects.T, strict=True):
         columns = _columns(problem, formula, effect)
         if columns is not None and np.isfinite(columns).all():
@@ -136,14 +118,14 @@ def remainders(problem: Problem) -> Iterator[Term]:
             yield Term(f"remainder {name}", "remainder", log, columns, REMAINDERS, channels=channels)
 
 
-def gross(problem: Problem, fit: Fit) -> Iterator[Term]:
+def gross(problem: Problem, look: Look) -> Iterator[Term]:
     """Single readings that cannot be: compared ones at the ends of dwells, and given ones through the model."""
     for i in np.flatnonzero(problem.ends):
         column = np.zeros((problem.m, 1))
         column[i] = problem.repeat[i]
         aside = Aside(int(i))
         yield Term(f"reading {i}", f"reading {i}", float(np.log(GROSS)), column, ERRORS, aside=aside)
-    for sensor, columns in problem.inputs(fit.look):
+    for sensor, columns in problem.inputs(look):
         for k in np.flatnonzero((columns**2).sum(axis=0) > 0):
             aside, name = Aside(int(k), sensor), f"{sensor} {k}"
             yield Term(name, name, float(np.log(GROSS)), columns[:, [k]], ERRORS, aside=aside)

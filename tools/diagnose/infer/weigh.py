@@ -15,14 +15,15 @@ from scipy.stats import chi2
 
 from ....model.errors import SolveError
 from ..model.formula import Formula
-from . import screen, sets
+from . import sets
 from .draws import correction
 from .evidence import WIDTHS, White
-from .fit import Fit, Start, bounds, fitted, started
+from .fit import Fit, fitted
 from .found import Extra, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
-from .terms import ERRORS, Term, gross, remainders, sizes, spreads
+from .screen import Screen, Start, null_draws, screened
+from .terms import ERRORS, Term, gross, remainders, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
 LOOKS = 4
@@ -117,7 +118,7 @@ class Weighing:
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
-        first = screen.look(problem, null, self.formulas)
+        first = self.screened(null, problem)
         self.critical = FIRST
         self.problem, self.null, self.first = problem, null, first
         if options.critical is None:  # else gross readings are known as well
@@ -125,16 +126,16 @@ class Weighing:
             self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
         if self.problem.aside != problem.aside:
             self.null = fitted(self.problem, (), null.look.z)
-            self.first = screen.look(self.problem, self.null, self.formulas)
+            self.first = self.screened(self.null, self.problem)
 
     def ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
-        weights = self.first.weights + [self.prior.share[c.id] for c in self.first.candidates]
+        weights = self._weights(self.first)
         seen = float(np.logaddexp.reduce(self.first.log_bf + weights))
         if (known := self.options.critical) is not None:
             self.drawn, self.critical, self.p_any = np.zeros(0), known, 0.0 if seen > known else 1.0
             return
-        self.drawn = screen.null_draws(self.first, weights, self.options.seed)
+        self.drawn = null_draws(self.first, weights, self.options.seed)
         self.critical = float(np.quantile(self.drawn, 1 - self.options.alpha))
         self.p_any = float((1 + (self.drawn >= seen).sum()) / (1 + len(self.drawn)))
 
@@ -146,7 +147,7 @@ class Weighing:
             best = self.leader().fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
-                look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
+                look = self.first if near is self.null else self.screened(near, self.problem)
                 if k < len(ALONE):
                     self._fit_alone(near, look, ALONE[k])
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
@@ -156,6 +157,14 @@ class Weighing:
             if k > 1 and self.leader().fit is best:
                 break
         return self._weighed()
+
+    def screened(self, near: Fit, problem: Problem) -> Screen:
+        """What every cause would explain beside a fitted hypothesis."""
+        return screened(problem, near.look, near.views(problem), self.formulas)
+
+    def _weights(self, look: Screen) -> np.ndarray:
+        """Log prior weight of each candidate, all together 1."""
+        return look.weights + [self.prior.share[c.id] for c in look.candidates]
 
     def keep_null(self) -> None:
         """Nothing among the hypotheses."""
@@ -178,19 +187,21 @@ class Weighing:
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
     def search(
-        self, near: Fit, look: screen.Look, stage: str, begun: float, scatters: int = sets.SCATTERS
+        self, near: Fit, look: Screen, stage: str, begun: float, scatters: int = sets.SCATTERS
     ) -> list[sets.TermSet]:
         """The likeliest sets of terms at a linearisation."""
         problem, J = self.whole, near.look.jacobian
-        terms = list(sizes(look, self.prior))
+        candidates = zip(look.candidates, self._weights(look), look.effects.T, strict=True)
+        terms = [_term(c, log, effect[:, None]) for c, log, effect in candidates]
         effects, acting = np.zeros(problem.m), near.look.acting
         place = problem.nz
         for a in acting:
-            terms.append(_as_fitted(a, J[:, [place]], self.prior))
+            log = self.prior.share[a.id] + np.log(a.formula.form.weight)  # its shapes are fitted, none a sample of many
+            terms.append(_term(a, log, J[:, [place]]))
             effects += a.t[0] * J[:, place]
             place += a.formula.size
-        terms += gross(problem, near)
-        terms += spreads(problem, near, self.spreads, self.prior)
+        terms += gross(problem, near.look)
+        terms += spreads(problem, near.look, self.spreads, self.prior)
         terms += remainders(problem)
         known = J[:, : problem.nz] @ J[:, : problem.nz].T
         noise = problem.noise(near.look)
@@ -208,7 +219,7 @@ class Weighing:
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
-    def _fit_alone(self, near: Fit, look: screen.Look, n: int) -> None:
+    def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
         for start, logs in self._promising(look, set(), n, self.options.wanted):
             beside = (frozenset[str](), self.problem.aside)
@@ -231,7 +242,7 @@ class Weighing:
             self._keep((frozenset(a.formula for a in acting), *beside), fit, extras, forms)
 
     def _promising(
-        self, look: screen.Look, taken: Set[str], n: int, wanted: Collection[str] = ()
+        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
@@ -262,7 +273,7 @@ class Weighing:
             rest = [b for b in acting if b is not a]
             with suppress(SolveError):
                 near = fitted(problem, rest, best.fit.look.z, best.fit.noise.scales)
-                look = screen.look(problem, near, self.formulas)
+                look = self.screened(near, problem)
                 taken = {a.id, *(b.formula.cause.family for b in rest)}
                 for start, logs in self._promising(look, taken, EXCHANGED):
                     forms = {c: known for c, known in best.forms.items() if c != a.id} | {start.acting.id: logs}
@@ -316,7 +327,7 @@ class Weighing:
         J = near.look.jacobian[:, : self.whole.nz]
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         begun = zip(s.members, t, strict=True)
-        acting = [started(one, size) for k, size in begun if (one := terms[k].acting) is not None]
+        acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
         extras = tuple(
             Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)))
             if t.formula
@@ -375,9 +386,8 @@ def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
     return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
 
 
-def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:
-    """What acts at a linearisation, with the shapes that were fitted."""
-    cause, form = acting.formula.cause, acting.formula.form
-    log = prior.share[cause.id] + float(np.log(form.weight))
-    low, high = (float(b[0]) for b in bounds(acting))
-    return Term(cause.id, cause.family, log, column, WIDTHS, low, high, acting, acting.formula)
+def _term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:
+    """A form of a cause that acts, or may."""
+    formula = acting.formula
+    cause = formula.cause
+    return Term(cause.id, cause.family, float(log_prior), column, WIDTHS, *formula.limits, acting, formula)
