@@ -140,8 +140,9 @@ class Answer:
 
     @property
     def top(self) -> Hypothesis:
-        """The likeliest hypothesis; nothing with probability 0 if there is none."""
-        return self.hypotheses[0] if self.hypotheses else Hypothesis(frozenset(), 0.0)
+        """The likeliest hypothesis, under an alarm the likeliest that something is wrong; nothing if there is none."""
+        told = [h for h in self.hypotheses if h.names or not self.alarm]
+        return told[0] if told else Hypothesis(frozenset(), 0.0)
 
     def credible(self, level: float = 0.9) -> list[Hypothesis]:
         """The smallest set of hypotheses whose probabilities reach the level; all if they do not."""

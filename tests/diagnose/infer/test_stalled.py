@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from gearheat.tools.diagnose.infer import draws, fit
-from gearheat.tools.diagnose.infer.draws import correction
+from gearheat.tools.diagnose.infer import fit
 from gearheat.tools.diagnose.infer.evidence import WIDTHS
 from gearheat.tools.diagnose.infer.fit import _Line
 from gearheat.tools.diagnose.infer.problem import Acting
@@ -56,17 +54,3 @@ def test_evidence_lacks_what_the_slopes_promise(monkeypatch: pytest.MonkeyPatch)
     assert found.short == pytest.approx(problem.cost(x) - least) and found.short > 3
     monkeypatch.setattr(fit, "STALLED", np.inf)
     assert stalled(problem).evidence - found.evidence == pytest.approx(found.short)
-
-
-def test_the_correction_is_drawn_about_where_the_fit_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the slopes lead, no draw comes near what the readings say."""
-    problem: Any = Turning()
-    found = replace(stalled(problem), form=0.0)
-    z, t = np.linspace(-8, 8, 321), np.linspace(-12, 12, 1601)
-    costs = np.array([[problem.cost(np.array([a, b])) for b in t] for a in z])
-    exact = np.log(np.exp(-costs).sum() * (z[1] - z[0]) * (t[1] - t[0]))
-    J = found.look.jacobian
-    H = J.T @ J + np.diag([1.0, 1 / WIDTHS[-1] ** 2])
-    gaussian = -problem.cost(found.look.x) + found.short + np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(H)[1]
-    monkeypatch.setattr(draws, "DRAWS", 4096)
-    assert correction(problem, found, seed=0).log - found.short == pytest.approx(exact - gaussian, abs=0.1)

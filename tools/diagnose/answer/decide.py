@@ -159,7 +159,7 @@ def beyond(h: Hypothesis) -> bool:
 
 
 class _Chances:
-    """Probabilities with their Monte-Carlo errors: of the evidence of each fit, and of the prior of nothing.
+    """Probabilities with their Monte-Carlo errors, which come of the prior of nothing.
 
     The alarm's critical value is a quantile of draws, and with it the prior of nothing; the odds against nothing are
     compared with the same draws, so that they are an alarm if, and only if, nothing has less than one half.
@@ -174,18 +174,15 @@ class _Chances:
         share = float((found.drawn > found.critical).mean())
         spread = np.sqrt(max(share * (1 - share), 1 / n) / n)
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))
-        #: Sources of error: which hypotheses share one, and the standard error of their log evidence.
-        self.sources = [(np.array([not h.causes for h in found.hypotheses]), 0.5 * float(high - low))]
-        for look in {id(h.fit.look): h.fit.look for h in found.hypotheses}.values():
-            own = np.array([h.fit.look is look for h in found.hypotheses])
-            self.sources.append((own, found.hypotheses[int(np.argmax(own))].error))
+        #: Standard error of the log odds of nothing.
+        self.error = 0.5 * float(high - low)
+        self.none = np.array([not h.causes for h in found.hypotheses])
 
     def of(self, mine: np.ndarray) -> Chance:
         """The probability of some hypotheses, a mask (n,)."""
         value = float(self.p[mine].sum())
-        slope = self.p * (mine - value)
-        error = np.sqrt(sum((slope[own].sum() * error) ** 2 for own, error in self.sources))
-        return Chance(min(value, 1.0), float(error))
+        slope = (self.p * (mine - value))[self.none].sum()
+        return Chance(min(value, 1.0), float(abs(slope) * self.error))
 
 
 def _join(found: Found, chances: _Chances) -> list[Joint]:

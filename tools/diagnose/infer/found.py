@@ -54,7 +54,6 @@ class Hypothesis:
         log_joint: log evidence, all forms counted, plus log prior
         extras: spreads of sizes and remainders beside them; the scatter of the fit holds them
         forms: log weight of each form of each cause, by id and name
-        error: standard error of the log evidence by importance sampling; 0 where none was needed
     """
 
     causes: tuple[str, ...]
@@ -62,7 +61,6 @@ class Hypothesis:
     log_joint: float
     extras: tuple[Extra, ...] = ()
     forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    error: float = 0.0
 
     def form(self, cause: str) -> str:
         """Name of the form of a cause."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -157,14 +158,19 @@ class Whitened:
         self.table, self.scatter, linear = table, scatter, table.linear
         V, log_prior = linear.covariance(scatter.scales)
         self.white = White.of(V + linear.scattered(scatter))
-        self.W, self.e = self.white(table.columns), self.white(linear.residual)
-        self.length, self.along = (self.W**2).sum(axis=0), self.W.T @ self.e
+        self.e = self.white(linear.residual)
         #: Log density of the residual without any size.
         self.log = self.white.log_density(self.e) + log_prior
 
+    @cached_property
+    def sizes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Columns of all sizes (M, n), their squared lengths and products with the residual (n,)."""
+        W = self.white(self.table.columns)
+        return W, (W**2).sum(axis=0), W.T @ self.e
+
     def beside(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
         """Beside a set: what ties other columns to it (M, j), what it explains (j,), log density over none."""
-        U = self.W[:, list(members)] * np.array(widths)
+        U = self.white(self.table.columns[:, list(members)]) * np.array(widths)
         root = np.linalg.cholesky(U.T @ U + np.eye(U.shape[1]))
         turned = np.linalg.solve(root, U.T).T
         b = turned.T @ self.e
@@ -177,8 +183,9 @@ class Whitened:
             turned, b: of `beside`
             least: what a size's must come to (n,); those that cannot have -inf
         """
-        tie = turned.T @ self.W
-        s, q = self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12)
+        W, length, along = self.sizes
+        tie = turned.T @ W
+        s, q = along - b @ tie, np.maximum(length - (tie**2).sum(axis=0), 1e-12)
         logs, at = np.full(len(s), -np.inf), np.zeros(len(s))
         for own, tried, prior, most in self.table.groups:
             able = 0.5 * s[own] ** 2 / q[own] + most > least[own]
@@ -190,8 +197,9 @@ class Whitened:
     def scored(self, members: Sequence[int], widths: Sequence[float]) -> TermSet:
         """A set with the widths of its members chosen in turn, and its log joint density."""
         n, own, more = len(members), np.array(widths), np.zeros(len(widths))
-        W, table = self.W[:, list(members)], self.table
-        A, c = W.T @ W, self.along[list(members)]
+        table = self.table
+        W = self.white(table.columns[:, list(members)])
+        A, c = W.T @ W, W.T @ self.e
         for _ in range(ROUNDS):
             for i, k in enumerate(members):
                 rest = np.arange(n) != i
@@ -257,22 +265,25 @@ class Whitened:
                 yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
 
     def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter]]:
-        """What other scatters promise beside a set: log joint density, scatter."""
-        linear, terms = self.table.linear, self.table.linear.terms
-        kept = [k for k, _ in self.scatter.beside]
-        for k, width in self.scatter.beside:
-            rest = tuple(b for b in self.scatter.beside if b[0] != k)
-            yield own.log, Scatter(self.scatter.scales, rest)
-            tried = terms[k].widths
-            place = int(np.flatnonzero(tried == width)[0])
-            for near in (place - 1, place + 1):
-                if 0 <= near < len(tried):
-                    yield own.log, Scatter(self.scatter.scales, tuple(sorted((*rest, (k, float(tried[near]))))))
+        """Scatters nearby, and the log joint density there of a set or of none: less, more, others, other scales."""
+        sides, scales = self.scatter.beside, self.scatter.scales
+        for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
+            near = self if beside == sides else Whitened(self.table, Scatter(scales, beside))
+            for members, widths in dict.fromkeys([(own.members, own.widths), ((), ())]):
+                base = near.scored(members, widths)
+                yield base.log, near.scatter
+                yield from near._further(base)
+        columns = self.table.columns[:, list(own.members)] * np.array(own.widths)
+        found = self.table.linear.scaled(columns @ columns.T + self.table.linear.scattered(self.scatter), scales)
+        if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
+            yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides)
+
+    def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter]]:
+        """One more scatter beside a set, at its likeliest width: log joint density, scatter."""
+        terms, kept = self.table.linear.terms, [*own.members, *(k for k, _ in self.scatter.beside)]
         turned, b, _ = self.beside(own.members, own.widths)
-        logs = self.table.log_priors([*own.members, *kept]) - self.table.log_prior([*own.members, *kept])
-        for k in range(self.table.n, len(terms)):
-            if not np.isfinite(logs[k]):
-                continue
+        logs = self.table.log_priors(kept) - self.table.log_prior(kept)
+        for k in self.table.n + np.flatnonzero(np.isfinite(logs[self.table.n :])):
             C = self.white(terms[k].columns)
             tie = turned.T @ C
             q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
@@ -281,12 +292,8 @@ class Whitened:
             q = np.maximum(q, 0.0)
             found = (0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)).sum(axis=1)
             best = int(np.argmax(found))
-            beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
+            beside = tuple(sorted((*self.scatter.beside, (int(k), float(terms[k].widths[best])))))
             yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside)
-        columns = self.table.columns[:, list(own.members)] * np.array(own.widths)
-        scales = linear.scaled(columns @ columns.T + linear.scattered(self.scatter), self.scatter.scales)
-        if np.abs(np.subtract(scales, self.scatter.scales)).max(initial=0.0) > 0.05:
-            yield own.log + 1.0, Scatter(tuple(np.round(scales, 3)), self.scatter.beside)
 
 
 def search(

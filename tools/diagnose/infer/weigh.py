@@ -16,7 +16,6 @@ from scipy.stats import chi2
 from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import sets
-from .draws import correction
 from .evidence import WIDTHS, White
 from .fit import Fit, fitted
 from .found import Extra, Found, Hypothesis, Key, with_forms
@@ -38,8 +37,6 @@ ALONE = (4, 10)
 EXCHANGED = 4
 #: p of any cause above which little is fitted.
 QUIET = 0.3
-#: Hypotheses within so many nats of the best are weighed by draws of the exact model.
-NEAR = 3.0
 #: Scatters looked at for gross readings.
 QUICK = 3
 #: Log odds of nothing against one cause while gross readings are looked for.
@@ -350,19 +347,8 @@ class Weighing:
             self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
 
     def _weighed(self) -> Found:
-        """All hypotheses with their probabilities, the leading ones corrected by draws of the exact model."""
-        self.progress("draws of the exact model", 0.9)
-        found, done = with_forms(self.hypotheses), set[int]()
-        while True:
-            best = max(h.log_joint for h in found)
-            near = [k for k, h in enumerate(found) if k not in done and h.log_joint >= best - NEAR]
-            if not near:
-                break
-            for k in near:
-                by = correction(self.problem, found[k].fit, self.options.seed)
-                found[k] = replace(found[k], log_joint=found[k].log_joint + by.log, error=by.error)
-            done.update(near)
-        found.sort(key=lambda h: -h.log_joint)
+        """All hypotheses with their probabilities."""
+        found = sorted(with_forms(self.hypotheses), key=lambda h: -h.log_joint)
         self.problem = self.whole.without(next(key[2] for key, h in self.hypotheses.items() if h.fit is found[0].fit))
         logs = np.array([h.log_joint for h in found])
         _, e = self.null.linear(self.problem)
