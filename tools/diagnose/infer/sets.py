@@ -283,7 +283,9 @@ class Whitened:
         terms, kept = self.table.linear.terms, [*own.members, *(k for k, _ in self.scatter.beside)]
         turned, b, _ = self.beside(own.members, own.widths)
         logs = self.table.log_priors(kept) - self.table.log_prior(kept)
-        for k in self.table.n + np.flatnonzero(np.isfinite(logs[self.table.n :])):
+        for k in range(self.table.n, len(terms)):
+            if not np.isfinite(logs[k]):
+                continue
             C = self.white(terms[k].columns)
             tie = turned.T @ C
             q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
@@ -292,7 +294,7 @@ class Whitened:
             q = np.maximum(q, 0.0)
             found = (0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)).sum(axis=1)
             best = int(np.argmax(found))
-            beside = tuple(sorted((*self.scatter.beside, (int(k), float(terms[k].widths[best])))))
+            beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
             yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside)
 
 
