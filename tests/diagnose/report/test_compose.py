@@ -12,11 +12,11 @@ from gearheat.scenarios.load import load
 from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
 from gearheat.tools.diagnose.answer.quality import list_repeats
-from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Acting
+from gearheat.tools.diagnose.infer.screen import screened
 from gearheat.tools.diagnose.report import extension
 from gearheat.tools.diagnose.request import Inputs, Request, read
 from gearheat.tools.diagnose.setting import Setting, setting
@@ -130,7 +130,7 @@ def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
     problem.measured = null.look.shown + sd * rng.standard_normal(problem.m) + zero
     ids = ("sensor.torque.offset", "sensor.oil_temp.offset", CAUSE)
     formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
-    first = screen.look(problem, null, formulas)
+    first = screened(problem, null.look, null.views(problem), formulas)
     found = replace(made.found, problem=problem, formulas=formulas, first=first)
     told = {v.channel: v for v in pictures.views(found)}
     assert set(told) == {s.name for s in o.read}
