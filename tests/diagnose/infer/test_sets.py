@@ -67,7 +67,7 @@ def test_all_that_acts_is_found(sizes: dict[int, float]) -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(5) + sum((t * effects[:, k] for k, t in sizes.items()), np.zeros(M))
     problem = linear(residual, [])
-    best = sets.search(problem, [[0.0]], lambda share: None)[0]
+    best = sets.search(problem, [sets.Scatter((0.0,))], lambda share: None)[0]
     assert named(problem, best) == {f"cause{k}" for k in sizes}
 
 
@@ -92,7 +92,7 @@ def test_terms_of_one_family_are_one_answer() -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(5) + 3.0 * effects[:, 2] - 3.0 * effects[:, 7]
     problem = linear(residual, [], alike=True)
-    assert all(len(s.terms) <= 1 for s in sets.search(problem, [[0.0]], lambda share: None))
+    assert all(len(s.terms) <= 1 for s in sets.search(problem, [sets.Scatter((0.0,))], lambda share: None))
 
 
 def test_a_gross_reading_is_no_cause_and_no_scatter() -> None:
@@ -102,7 +102,7 @@ def test_a_gross_reading_is_no_cause_and_no_scatter() -> None:
     column[17] = 1.0
     reading = Term("reading 17", "reading 17", np.log(0.002), column, ERRORS, aside=Aside(17))
     problem = linear(residual, [reading])
-    best = sets.search(problem, [[0.0]], lambda share: None)[0]
+    best = sets.search(problem, [sets.Scatter((0.0,))], lambda share: None)[0]
     assert named(problem, best) == {"reading 17"}
     assert abs(best.scatter.scales[0]) < 0.3
 
@@ -114,7 +114,7 @@ def test_a_walk_beside_its_own_scatter() -> None:
     residual = rng.standard_normal(M) + 1.5 * walk @ rng.standard_normal(M)
     term = Term("cause0", "walk", np.log(0.05), walk, SPREADS, formula=SimpleNamespace(form=SimpleNamespace(name="")))  # type: ignore[arg-type]
     problem = linear(residual, [term])
-    best = sets.search(problem, [[1.2]], lambda share: None)[0]
+    best = sets.search(problem, [sets.Scatter((1.2,))], lambda share: None)[0]
     assert CAUSES in best.terms
     assert dict(best.scatter.beside)[CAUSES] in (1.0, 2.0)
     assert abs(best.scatter.scales[0]) < 0.5
@@ -126,5 +126,5 @@ def test_no_better_set_of_two_is_missed() -> None:
     problem = linear(residual, [])
     white = sets.Whitened(sets.Table(problem), sets.Scatter((0.0,)))
     every = [white.scored(own, [1.6] * len(own)) for n in (0, 1, 2) for own in combinations(range(CAUSES), n)]
-    found = [s for s in sets.search(problem, [[0.0]], lambda share: None) if len(s.terms) <= 2]
+    found = [s for s in sets.search(problem, [sets.Scatter((0.0,))], lambda share: None) if len(s.terms) <= 2]
     assert found[0].terms == max(every, key=lambda s: s.log).terms

@@ -39,6 +39,11 @@ class Extra:
     log_prior: float
 
     @property
+    def label(self) -> str:
+        """That of the term that it is."""
+        return f"{self.cause}: {self.form}" if self.cause else f"{self.form}: {', '.join(self.channels)}"
+
+    @property
     def term(self) -> Term:
         """Its covariance."""
         return Term(self.form, self.size * self.columns)

@@ -299,21 +299,21 @@ class Whitened:
 
 
 def search(
-    linear: Linear, scales: Sequence[Sequence[float]], progress: Callable[[float], None], scatters: int = SCATTERS
+    linear: Linear, begun: Sequence[Scatter], progress: Callable[[float], None], scatters: int = SCATTERS
 ) -> list[TermSet]:
     """The likeliest sets of terms in all scatters looked at, best first; one of each set of terms.
 
     Args:
         linear: the problem
-        scales: of the scatters to begin with
+        begun: scatters to begin with
         progress: told the share done
         scatters: looked at, at most
     """
     table, found = Table(linear), dict[tuple[int, ...], TermSet]()
     queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]] = []
-    for k, own in enumerate(scales):
-        heapq.heappush(queue, (-np.inf, k, Scatter(tuple(own)), ()))
-    seen, best, number = set[Scatter](), -np.inf, len(scales)
+    for k, own in enumerate(begun):
+        heapq.heappush(queue, (-np.inf, k, own, ()))
+    seen, best, number = set[Scatter](), -np.inf, len(begun)
     while queue and len(seen) < scatters:
         promise, _, scatter, starts = heapq.heappop(queue)
         if scatter in seen or -promise < best - WINDOW:

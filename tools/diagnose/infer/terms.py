@@ -58,9 +58,8 @@ class Term:
 
     @property
     def label(self) -> str:
-        """Name with the form."""
-        form = self.formula.form.name if self.formula else ""
-        return f"{self.name}: {form}" if form else self.name
+        """Name with the form, or with the channels of a remainder."""
+        return f"{self.name}: {self.formula.form.name if self.formula else ', '.join(self.channels)}"
 
 
 def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:

@@ -213,7 +213,11 @@ class Weighing:
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
         self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, self.critical, self.options.most)
-        starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
+        starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
+        if self.hypotheses and (extras := (leader := self.leader()).extras):
+            sizes = {e.label: e.size for e in extras}
+            beside = tuple((k, sizes[t.label]) for k, t in enumerate(terms) if t.scatters and t.label in sizes)
+            starts = [sets.Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
     def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
