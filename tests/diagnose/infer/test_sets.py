@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from types import SimpleNamespace
 from typing import Any
@@ -128,3 +129,31 @@ def test_no_better_set_of_two_is_missed() -> None:
     every = [white.scored(own, [1.6] * len(own)) for n in (0, 1, 2) for own in combinations(range(CAUSES), n)]
     found = [s for s in sets.search(problem, [sets.Scatter((0.0,))], lambda share: None) if len(s.terms) <= 2]
     assert found[0].terms == max(every, key=lambda s: s.log).terms
+
+
+@pytest.mark.parametrize("seed", [10, 12])
+def test_a_walk_is_found_where_a_size_and_another_scatter_stand_in_for_it(seed: int) -> None:
+    """It is tried beside none and in the place of what is there, not beside the likeliest set alone."""
+    rng, ramp, pairs = np.random.default_rng(seed), np.linspace(0, 1, M)[:, None], np.kron(np.eye(20), np.ones((2, 1)))
+    walk = np.tril(np.ones((M, M)))[:, ::2]
+    residual = rng.standard_normal(M) + 1.5 * walk @ rng.standard_normal(20)
+    named_so: Any = SimpleNamespace(form=SimpleNamespace(name=""))
+    problem = linear(residual, [])
+    trend = Term("cause0", "cause0", np.log(1 / 12), 6 * ramp, WIDTHS, -9.0, 9.0, SimpleNamespace(), named_so)  # type: ignore[arg-type]
+    steps = Term("steps", "remainder", np.log(0.06), pairs, SPREADS)
+    wander = Term("cause1", "walk", np.log(1 / 12), walk, SPREADS, formula=named_so)
+    whole = replace(problem, terms=[trend, *problem.terms[1:], steps, wander])
+    best = sets.search(whole, [sets.Scatter((0.0,))], lambda share: None)[0]
+    assert named(whole, best) == {"cause1"}
+
+
+def test_a_cause_that_has_a_size_and_is_drawn_anew_counts_once() -> None:
+    named_so: Any = SimpleNamespace(form=SimpleNamespace(name=""))
+    share = np.log(1 / 12)
+    anew = Term("cause3", "cause3, anew", share + np.log(0.5), np.eye(M), SPREADS, formula=named_so)
+    table = sets.Table(linear(noise(3), [anew]))
+    alone, both, other = (table.log_prior(own) for own in ((CAUSES,), (3, CAUSES), (4, CAUSES)))
+    assert both == pytest.approx(alone)
+    assert other < both - 3
+    assert table.log_priors([CAUSES])[[3, 4]] == pytest.approx([both, other])
+    assert table.log_priors([3])[CAUSES] == pytest.approx(both)

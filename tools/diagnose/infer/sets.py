@@ -120,6 +120,7 @@ class Table:
         self.shares = np.array([t.log_prior for t in linear.terms])
         self.causes = np.array([t.formula is not None for t in linear.terms])
         self.families = np.array([t.family for t in linear.terms])
+        self.names = np.array([t.name if t.formula else "" for t in linear.terms])
         self.kinds = np.array([kind(t.name) if t.formula else "" for t in linear.terms])
         gross = np.array([t.aside is not None for t in own])
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
@@ -131,21 +132,29 @@ class Table:
             self.groups.append((k, widths, prior, -np.log(prior.min(axis=0))))
 
     def named(self, members: Sequence[int]) -> list[str]:
-        """The causes of a set."""
-        return [self.linear.terms[k].name for k in members if self.causes[k]]
+        """The causes of a set, each once."""
+        return list(dict.fromkeys(str(self.names[k]) for k in members if self.causes[k]))
 
     def log_prior(self, members: Sequence[int]) -> float:
         """Of a set, over that of one cause."""
         causes = self.named(members)
         number = self.linear.prior.number(causes) if causes else self.linear.critical
-        return float(self.shares[list(members)].sum() + number)
+        return float(self.shares[list(members)].sum() + number - self._again(members))
+
+    def _again(self, members: Sequence[int]) -> float:
+        """Log shares of causes that act by two terms: a size beside what it is anew with each mounting."""
+        names, share = self.names[list(members)].tolist(), self.linear.prior.share
+        return float(sum(share[c] * (names.count(c) - 1) for c in self.named(members)))
 
     def log_priors(self, members: Sequence[int]) -> np.ndarray:
         """Of a set with each of the terms (k,); -inf where they do not go together."""
         causes, prior = self.named(members), self.linear.prior
         like = np.isin(self.kinds, [kind(c) for c in causes if kind(c)])
         number = prior.number(causes) + prior.further(len(causes)) + like * np.log(SAME)
-        logs = self.shares + np.where(self.causes, number, prior.number(causes) if causes else self.linear.critical)
+        for cause in causes:  # by another term
+            number[self.names == cause] = prior.number(causes) - prior.share[cause]
+        alone = prior.number(causes) if causes else self.linear.critical
+        logs = self.shares + np.where(self.causes, number, alone) - self._again(members)
         taken = np.isin(self.families, self.families[list(members)])
         taken |= self.causes & (len(causes) >= self.linear.most)
         return np.where(taken, -np.inf, logs + self.shares[list(members)].sum())

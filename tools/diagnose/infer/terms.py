@@ -73,7 +73,8 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
         if columns is not None and np.isfinite(columns).all():
             cause = formula.cause
             log = prior.share[cause.id] + float(np.log(formula.form.weight))
-            yield Term(cause.id, cause.family, log, columns, SPREADS, formula=formula)
+            beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
+            yield Term(cause.id, cause.family + beside, log, columns, SPREADS, formula=formula)
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:

@@ -342,7 +342,7 @@ class Weighing:
     def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
-        causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
+        causes = tuple(dict.fromkeys([*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause)]))
         log = fit.evidence + sum(float(np.log(f.form.weight)) for f in acting)
         log += sum(e.log_prior for e in extras)
         log += self.prior(causes) if causes else self.critical
