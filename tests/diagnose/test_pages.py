@@ -85,7 +85,7 @@ SCHEMES = {
 #: The page's section about the measured campaign of the planetary rig.
 SECTION = (PAGES / "trust" / "diagnosis.md").read_text("utf-8").partition("## The measured campaign\n")[2]
 #: What its leading sets have in common, as the page names them.
-IN_ALL = ("losses.oil_viscosity", "sensor.oil_temp.mounting", "sensor.torque.drift", "sensor.torque.step")
+IN_ALL = ("losses.bearing_friction", "sensor.oil_temp.mounting", "sensor.torque.random_walk")
 diagnosed_again = pytest.mark.skipif(os.environ.get("GEARHEAT_HIDDEN") != "all", reason="GEARHEAT_HIDDEN=all only")
 
 
@@ -135,7 +135,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory):
 
 @diagnosed_again
 def test_the_gain_of_the_measured_campaign_is_what_the_page_prints(campaign) -> None:
-    gains = {(g["scheme"], g["channel"]): g for g in (*campaign["gain"], *campaign["gain_grouped"])}
+    gains = {(g["scheme"], g["channel"]): g for g in (campaign["gain"], *campaign["gain_grouped"])}
     for key, printed in gains_printed().items():
         gain = gains[key]
         told = [gain[side][when] for when in ("without", "with") for side in ("before", "after")]
@@ -152,6 +152,6 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
         alone = {c["id"]: c["probability"] for c in views[channel]["causes"]}
         for cause, probability in causes.items():
             assert alone[cause] == pytest.approx(probability, abs=0.02)
-    assert campaign["answers"][0]["probability"] == pytest.approx(0.29, abs=0.02)
-    assert campaign["test"]["p_adequacy"] == pytest.approx(0.61, abs=0.02)
+    assert campaign["answers"][0]["probability"] == pytest.approx(0.52, abs=0.02)
+    assert campaign["test"]["p_adequacy"] == pytest.approx(0.59, abs=0.02)
     assert all([cause] in answer["causes"] for answer in campaign["answers"] for cause in IN_ALL)

@@ -15,7 +15,6 @@ from ....model.errors import SolveError
 from ..model.formula import Formula
 from .evidence import split_error
 from .fit import Fit, prior_precision
-from .found import Extra
 from .problem import Aside, Problem
 from .weigh import Options, Weighing
 
@@ -27,7 +26,7 @@ COUNTS = 0.003
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Errors of what is foreseen (2, k): without, with what only interpolates between tests, mountings, conditions.
+    """Errors of what is foreseen (2, k): by sizes alone, and with scatter that ties tests, mountings, conditions.
 
     Args:
         held: entries that are left out (k,)
@@ -72,17 +71,13 @@ def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, opt
     kept = np.setdiff1d(np.arange(own.problem.m), own.problem.entries_aside)
     after = sum(share * linear.left(s, kept, held) for s, share in zip(found, p / p.sum(), strict=True) if share)
     leader = own.leader()
-    before, leading = (
-        left(own.problem, fit, extras, kept, held) for fit, extras in ((own.null, ()), (leader.fit, leader.extras))
-    )
+    before, leading = (left(own.problem, fit, kept, held) for fit in (own.null, leader.fit))
     return Foreseen(held, before, np.asarray(after), leading, leader.causes)
 
 
-def left(problem: Problem, fit: Fit, extras: Sequence[Extra], kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """What a fit leaves of held entries: by its sizes alone, and with what scatters beside them (2, k)."""
+def left(problem: Problem, fit: Fit, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """What a fit leaves of held entries: by its sizes alone, and by scatter that ties them as well (2, k)."""
     look = fit.look
-    prior = 1 / prior_precision(problem, look.acting)
-    S = fit.noise.covariance + look.jacobian * prior @ look.jacobian.T
+    sized = look.jacobian / prior_precision(problem, look.acting) @ look.jacobian.T
     r = problem.measured - look.shown + look.jacobian @ look.x
-    C = np.concatenate([np.zeros((problem.m, 0)), *(e.size * e.columns for e in extras)], axis=1)
-    return split_error(S, C @ C.T, r, kept, held)
+    return split_error(fit.noise.covariance, sized, r, kept, held)

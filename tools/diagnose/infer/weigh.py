@@ -212,7 +212,9 @@ class Weighing:
             return [float(s) for s in own.scales]
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, self.critical, self.options.most)
+        self.linear = sets.Linear(
+            terms, residual, known, covariance, scaled, self.prior, self.critical, self.options.most
+        )
         starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):
             sizes = {e.label: e.size for e in extras}

@@ -252,14 +252,14 @@ def doubt(findings: Findings) -> str:
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
         return f"{text} {useless}" if worse else ""
     if found.rmse_after >= found.rmse_before:
-        return f"On readings left out the causes predict no better ({gain(found)}). {useless}"
+        return f"On readings left out the extended rig alone predicts no better ({gain(found)}). {useless}"
     worse = [
         f"{SCHEMES.get(g.scheme, g.scheme)} {number(g.rmse_before)} before, {with_unit(g.rmse_after, g.unit)} after"
         for g in findings.gain_grouped
         if g.channel == found.channel and g.rmse_after > (1 + NOTICEABLE) * g.rmse_before
     ]
     if worse:
-        text = f"Farther from what was measured the causes predict {found.channel} no better"
+        text = f"Farther from what was measured the extended rig predicts {found.channel} no better"
         return f"{text} ({'; '.join(worse)}): there do not use the extended rig."
     best = min(found.rivals, key=lambda name: found.rivals[name], default="")
     if best and found.rivals[best] < found.rmse_after:
