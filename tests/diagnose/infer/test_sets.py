@@ -45,7 +45,9 @@ def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = 
         logs = -0.5 * (r2 / V + np.log(V)).sum(axis=1) - 0.5 * (tried / 0.25) ** 2
         return [float(tried[int(np.argmax(logs))])]
 
-    return sets.Linear([*own, *gross, *scatters], residual, np.zeros((M, M)), covariance, scaled, prior, CRITICAL, 8)
+    return sets.Linear(
+        [*own, *gross, *scatters], residual, covariance, lambda scales: np.zeros((M, M)), scaled, prior, CRITICAL, 8
+    )
 
 
 def effects_of(rng: np.random.Generator) -> np.ndarray:

@@ -145,7 +145,7 @@ class Gain(Model):
     """Errors on readings that were held out, with everything repeated without them."""
 
     class Both(Model):
-        """By the rig alone, and with scatter that ties readings: of tests, mountings, conditions, what is left."""
+        """By what lasts, and with what is another in each test or mounting as well: zeros, fillings, remainders."""
 
         without: Number
         with_: Number = Field(alias="with")
@@ -155,7 +155,7 @@ class Gain(Model):
     channel: str
     unit: str = "K"
     n: int
-    rmse_before: Number = Field(description="by the rig alone: the same as before.without")
+    rmse_before: Number = Field(description="by what lasts: the same as before.without")
     rmse_after: Number = Field(description="the same as after.without")
     before: Both | None = Field(default=None, description="calibrated, no cause")
     after: Both | None = Field(

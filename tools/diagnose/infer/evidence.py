@@ -131,19 +131,19 @@ def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.nda
 
 
 def split_error(
-    scatter: np.ndarray, sized: np.ndarray, residual: np.ndarray, kept: np.ndarray, held: np.ndarray
+    covariance: np.ndarray, passing: np.ndarray, residual: np.ndarray, kept: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
-    """What kept entries leave of held ones: by sizes alone, and by scatter that ties them as well (2, k).
+    """What kept entries leave of held ones: without a part of what ties them, and with all of it (2, k).
 
     Args:
-        scatter: covariance of all entries (M, M)
-        sized: of what sizes and nuisances do to them (M, M)
+        covariance: of all entries (M, M)
+        passing: the part of it that is another in each test or mounting (M, M)
         residual: (M,)
         kept, held: numbers of entries
     """
-    known = White.of((scatter + sized)[np.ix_(kept, kept)]).back(residual[kept])
-    left = residual[held] - sized[np.ix_(held, kept)] @ known
-    return np.array([left, left - scatter[np.ix_(held, kept)] @ known])
+    known = White.of(covariance[np.ix_(kept, kept)]).back(residual[kept])
+    left = residual[held] - covariance[np.ix_(held, kept)] @ known
+    return np.array([left + passing[np.ix_(held, kept)] @ known, left])
 
 
 def mass_inside(

@@ -26,7 +26,7 @@ COUNTS = 0.003
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Errors of what is foreseen (2, k): by sizes alone, and with scatter that ties tests, mountings, conditions.
+    """Errors of what is foreseen (2, k): by what lasts, and by what passes with a test or mounting, too.
 
     Args:
         held: entries that are left out (k,)
@@ -76,8 +76,8 @@ def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, opt
 
 
 def left(problem: Problem, fit: Fit, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """What a fit leaves of held entries: by its sizes alone, and by scatter that ties them as well (2, k)."""
+    """What a fit leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
     look = fit.look
-    sized = look.jacobian / prior_precision(problem, look.acting) @ look.jacobian.T
+    S = fit.noise.covariance + look.jacobian / prior_precision(problem, look.acting) @ look.jacobian.T
     r = problem.measured - look.shown + look.jacobian @ look.x
-    return split_error(fit.noise.covariance, sized, r, kept, held)
+    return split_error(S, fit.noise.passing, r, kept, held)

@@ -46,7 +46,7 @@ class Extra:
     @property
     def term(self) -> Term:
         """Its covariance."""
-        return Term(self.form, self.size * self.columns)
+        return Term(self.form, self.size * self.columns, passing=True)
 
 
 @dataclass(frozen=True)

@@ -97,9 +97,18 @@ class Noise:
     @cached_property
     def covariance(self) -> np.ndarray:
         """The whole (M, M)."""
+        return self._summed([True] * len(self.terms))
+
+    @property
+    def passing(self) -> np.ndarray:
+        """The part of it that is another in each test or mounting (M, M)."""
+        return self._summed([t.passing for t in self.terms])
+
+    def _summed(self, chosen: Sequence[bool]) -> np.ndarray:
         scales = np.zeros(len(self.terms))
         scales[[t.loose > 0 for t in self.terms]] = self.scales
-        return summed(self.terms, scales, self.terms[0].m)
+        own = [t for t, mine in zip(self.terms, chosen, strict=True) if mine]
+        return summed(own, scales[list(chosen)], self.terms[0].m)
 
     @property
     def log_prior(self) -> float:

@@ -75,8 +75,8 @@ class Linear:
     Attributes:
         terms: all that may act, sizes and gross readings before scatters
         residual: (M,)
-        known: covariance of what nuisances do (M, M)
         covariance: of scales -> what is uncertain without terms (M, M), and the log prior of the scales
+        passing: of scales -> the part of it that is another in each test or mounting (M, M)
         scaled: what is uncertain beside them (M, M), scales where it begins -> the likeliest scales
         prior: of causes
         critical: log prior odds of nothing against one cause
@@ -85,8 +85,8 @@ class Linear:
 
     terms: Sequence[Term]
     residual: np.ndarray
-    known: np.ndarray
     covariance: Callable[[Sequence[float]], tuple[np.ndarray, float]]
+    passing: Callable[[Sequence[float]], np.ndarray]
     scaled: Callable[[np.ndarray, Sequence[float]], Sequence[float]]
     prior: Prior
     critical: float
@@ -104,11 +104,12 @@ class Linear:
         return np.asarray(whole @ whole.T)
 
     def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """What a set leaves of held entries: by its sizes alone, and by scatter that ties them as well (2, k)."""
+        """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         columns = [self.terms[k].columns for k in own.members]
         G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
-        scatter = self.covariance(own.scatter.scales)[0] - self.known + self.scattered(own.scatter)
-        return split_error(scatter, self.known + G @ G.T, self.residual, kept, held)
+        beside, scales = self.scattered(own.scatter), own.scatter.scales
+        whole = self.covariance(scales)[0] + beside + G @ G.T
+        return split_error(whole, self.passing(scales) + beside, self.residual, kept, held)
 
 
 class Table:

@@ -207,13 +207,16 @@ class Weighing:
             own = replace(noise, scales=np.array(scales))
             return own.covariance + known, own.log_prior
 
+        def passing(scales: Sequence[float]) -> np.ndarray:
+            return replace(noise, scales=np.array(scales)).passing
+
         def scaled(more: np.ndarray, scales: Sequence[float]) -> Sequence[float]:
             own = replace(noise, scales=np.array(scales)).fitted(residual, known + more)
             return [float(s) for s in own.scales]
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
         self.linear = sets.Linear(
-            terms, residual, known, covariance, scaled, self.prior, self.critical, self.options.most
+            terms, residual, covariance, passing, scaled, self.prior, self.critical, self.options.most
         )
         starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):

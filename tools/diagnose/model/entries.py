@@ -90,7 +90,7 @@ class Seen:
 class Term:
     """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
 
-    `loose` is the prior's standard deviation of its log scale.
+    `loose` is the prior's standard deviation of its log scale. What is `passing` is another in each test or mounting.
     """
 
     name: str
@@ -98,6 +98,7 @@ class Term:
     variance: np.ndarray | None = None
     loose: float = 0.0
     covariance: np.ndarray | None = None
+    passing: bool = False
 
     @property
     def m(self) -> int:

@@ -252,7 +252,7 @@ def doubt(findings: Findings) -> str:
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
         return f"{text} {useless}" if worse else ""
     if found.rmse_after >= found.rmse_before:
-        return f"On readings left out the extended rig alone predicts no better ({gain(found)}). {useless}"
+        return f"On readings left out the extended rig predicts no better ({gain(found)}). {useless}"
     worse = [
         f"{SCHEMES.get(g.scheme, g.scheme)} {number(g.rmse_before)} before, {with_unit(g.rmse_after, g.unit)} after"
         for g in findings.gain_grouped

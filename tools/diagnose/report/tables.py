@@ -147,9 +147,9 @@ def gain(findings: Findings) -> list[Table]:
             "Errors on readings left out",
             (*head, *rivals, "scatter of one reading"),
             rows,
-            "Root mean square. The whole inference is repeated without the readings left out. Before and after: by the"
-            " rig alone. Interpolated: with scatter that readings share, of days, mountings, zeros that wander and what"
-            " is left, which says nothing of a new campaign.",
+            "Root mean square. The whole inference is repeated without the readings left out. Before and after: by"
+            " what lasts. Interpolated: with what is another in each test or mounting as well, fillings, zeros that"
+            " wander, remainders, which says nothing of a new campaign.",
         ),
         Table("The rig played over these data, root mean square", ("channel", "calibrated", "extended"), played),
     ]
