@@ -12,8 +12,9 @@ import pytest
 from gearheat.tools.diagnose.infer import sets
 from gearheat.tools.diagnose.infer.evidence import WIDTHS
 from gearheat.tools.diagnose.infer.prior import Prior
-from gearheat.tools.diagnose.infer.problem import Aside
+from gearheat.tools.diagnose.infer.problem import Aside, Noise
 from gearheat.tools.diagnose.infer.terms import ERRORS, SPREADS, Term
+from gearheat.tools.diagnose.model.entries import Term as Scatter
 from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 
@@ -35,19 +36,8 @@ def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = 
     gross = [t for t in more if t.aside is not None]
     scatters = [t for t in more if t.aside is None]
 
-    def covariance(scales: Any) -> tuple[np.ndarray, float]:
-        return np.exp(2 * scales[0]) * np.eye(M), -0.5 * (scales[0] / 0.25) ** 2
-
-    def scaled(known: np.ndarray, scales: Any) -> list[float]:
-        values, vectors = np.linalg.eigh(known)
-        r2, tried = (vectors.T @ residual) ** 2, np.linspace(-1, 2, 61)
-        V = values + np.exp(2 * tried)[:, None]
-        logs = -0.5 * (r2 / V + np.log(V)).sum(axis=1) - 0.5 * (tried / 0.25) ** 2
-        return [float(tried[int(np.argmax(logs))])]
-
-    return sets.Linear(
-        [*own, *gross, *scatters], residual, covariance, lambda scales: np.zeros((M, M)), scaled, prior, CRITICAL, 8
-    )
+    noise = Noise((Scatter("readings", variance=np.ones(M), loose=0.25),), np.zeros(1))
+    return sets.Linear([*own, *gross, *scatters], residual, np.zeros((M, M)), noise, prior, CRITICAL, 8)
 
 
 def effects_of(rng: np.random.Generator) -> np.ndarray:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from .evidence import White, averaged, by_width, mass_inside, prior_mass, split_error
 from .prior import SAME, Prior, kind
+from .problem import Noise
 from .terms import Term
 
 #: Sizes that may act together, gross readings among them.
@@ -75,9 +76,8 @@ class Linear:
     Attributes:
         terms: all that may act, sizes and gross readings before scatters
         residual: (M,)
-        covariance: of scales -> what is uncertain without terms (M, M), and the log prior of the scales
-        passing: of scales -> the part of it that is another in each test or mounting (M, M)
-        scaled: what is uncertain beside them (M, M), scales where it begins -> the likeliest scales
+        known: covariance of what nuisances do (M, M)
+        noise: its scatter
         prior: of causes
         critical: log prior odds of nothing against one cause
         most: causes that may act together
@@ -85,9 +85,8 @@ class Linear:
 
     terms: Sequence[Term]
     residual: np.ndarray
-    covariance: Callable[[Sequence[float]], tuple[np.ndarray, float]]
-    passing: Callable[[Sequence[float]], np.ndarray]
-    scaled: Callable[[np.ndarray, Sequence[float]], Sequence[float]]
+    known: np.ndarray
+    noise: Noise
     prior: Prior
     critical: float
     most: int
@@ -96,6 +95,10 @@ class Linear:
     def n(self) -> int:
         """Number of sizes and gross readings."""
         return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
+
+    def at(self, scales: Sequence[float]) -> Noise:
+        """The scatter with some scales."""
+        return replace(self.noise, scales=np.array(scales))
 
     def scattered(self, scatter: Scatter) -> np.ndarray:
         """Covariance of what scatters beside the loose terms (M, M)."""
@@ -107,9 +110,9 @@ class Linear:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         columns = [self.terms[k].columns for k in own.members]
         G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
-        beside, scales = self.scattered(own.scatter), own.scatter.scales
-        whole = self.covariance(scales)[0] + beside + G @ G.T
-        return split_error(whole, self.passing(scales) + beside, self.residual, kept, held)
+        beside, noise = self.scattered(own.scatter), self.at(own.scatter.scales)
+        whole = noise.covariance + self.known + beside + G @ G.T
+        return split_error(whole, noise.passing + beside, self.residual, kept, held)
 
 
 class Table:
@@ -168,11 +171,11 @@ class Whitened:
 
     def __init__(self, table: Table, scatter: Scatter) -> None:
         self.table, self.scatter, linear = table, scatter, table.linear
-        V, log_prior = linear.covariance(scatter.scales)
-        self.white = White.of(V + linear.scattered(scatter))
+        noise = linear.at(scatter.scales)
+        self.white = White.of(noise.covariance + linear.known + linear.scattered(scatter))
         self.e = self.white(linear.residual)
         #: Log density of the residual without any size.
-        self.log = self.white.log_density(self.e) + log_prior
+        self.log = self.white.log_density(self.e) + noise.log_prior
 
     @cached_property
     def sizes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -285,8 +288,9 @@ class Whitened:
                 base = near.scored(members, widths)
                 yield base.log, near.scatter
                 yield from near._further(base)
-        columns = self.table.columns[:, list(own.members)] * np.array(own.widths)
-        found = self.table.linear.scaled(columns @ columns.T + self.table.linear.scattered(self.scatter), scales)
+        columns, linear = self.table.columns[:, list(own.members)] * np.array(own.widths), self.table.linear
+        beside = columns @ columns.T + linear.scattered(self.scatter)
+        found = linear.at(scales).fitted(linear.residual, linear.known + beside).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides)
 

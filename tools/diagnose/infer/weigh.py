@@ -202,22 +202,8 @@ class Weighing:
         terms += remainders(problem)
         known = J[:, : problem.nz] @ J[:, : problem.nz].T
         noise = problem.noise(near.look)
-
-        def covariance(scales: Sequence[float]) -> tuple[np.ndarray, float]:
-            own = replace(noise, scales=np.array(scales))
-            return own.covariance + known, own.log_prior
-
-        def passing(scales: Sequence[float]) -> np.ndarray:
-            return replace(noise, scales=np.array(scales)).passing
-
-        def scaled(more: np.ndarray, scales: Sequence[float]) -> Sequence[float]:
-            own = replace(noise, scales=np.array(scales)).fitted(residual, known + more)
-            return [float(s) for s in own.scales]
-
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = sets.Linear(
-            terms, residual, covariance, passing, scaled, self.prior, self.critical, self.options.most
-        )
+        self.linear = sets.Linear(terms, residual, known, noise, self.prior, self.critical, self.options.most)
         starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):
             sizes = {e.label: e.size for e in extras}
@@ -325,7 +311,7 @@ class Weighing:
     def _fit(self, own: _Combination, near: Fit, forms: dict[str, dict[str, float]]) -> None:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
-        V, _ = self.linear.covariance(s.scatter.scales)
+        V = self.linear.at(s.scatter.scales).covariance + self.linear.known
         scatters = [(terms[k], width) for k, width in s.scatter.beside]
         G = np.concatenate([np.zeros((len(V), 0)), *(terms[k].columns for k in s.members)], axis=1)
         v = np.array(s.widths) ** 2
