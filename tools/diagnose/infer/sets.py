@@ -289,8 +289,8 @@ class Whitened:
                 yield base.log, near.scatter
                 yield from near._further(base)
         columns, linear = self.table.columns[:, list(own.members)] * np.array(own.widths), self.table.linear
-        beside = columns @ columns.T + linear.scattered(self.scatter)
-        found = linear.at(scales).fitted(linear.residual, linear.known + beside).scales
+        tied = columns @ columns.T + linear.scattered(self.scatter)
+        found = linear.at(scales).fitted(linear.residual, linear.known + tied).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides)
 
