@@ -62,7 +62,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     """Size, averaged over the hypotheses that hold a cause, and shapes of the most probable one."""
     total = sum(p for _, p in members)
     acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
-    if not members or cause not in members[0][0].fit.causes:
+    if not acting or cause not in members[0][0].fit.causes:
         return _spread(found, cause, members)
     pairs = []
     for h, _ in acting:

@@ -29,6 +29,7 @@ class Extra:
         channels: sensors in which a remainder acts
         columns: at size one (M, k)
         log_prior: of its form, or of the remainder beside a hypothesis
+        label: that of the term that it is
     """
 
     cause: str | None
@@ -37,11 +38,7 @@ class Extra:
     channels: tuple[str, ...]
     columns: np.ndarray
     log_prior: float
-
-    @property
-    def label(self) -> str:
-        """That of the term that it is."""
-        return f"{self.cause}: {self.form}" if self.cause else f"{self.form}: {', '.join(self.channels)}"
+    label: str
 
     @property
     def term(self) -> Term:

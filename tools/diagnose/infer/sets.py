@@ -124,10 +124,10 @@ class Table:
         self.columns = np.concatenate([t.columns for t in own], axis=1)
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
-        self.causes = np.array([t.formula is not None for t in linear.terms])
         self.families = np.array([t.family for t in linear.terms])
-        self.names = np.array([t.name if t.formula else "" for t in linear.terms])
-        self.kinds = np.array([kind(t.name) if t.formula else "" for t in linear.terms])
+        names = [t.name if t.formula else "" for t in linear.terms]
+        self.names, self.kinds = np.array(names), np.array([kind(name) for name in names])
+        self.causes = self.names != ""
         gross = np.array([t.aside is not None for t in own])
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
@@ -155,12 +155,12 @@ class Table:
     def log_priors(self, members: Sequence[int]) -> np.ndarray:
         """Of a set with each of the terms (k,); -inf where they do not go together."""
         causes, prior = self.named(members), self.linear.prior
-        like = np.isin(self.kinds, [kind(c) for c in causes if kind(c)])
-        number = prior.number(causes) + prior.further(len(causes)) + like * np.log(SAME)
+        like, own = np.isin(self.kinds, [kind(c) for c in causes if kind(c)]), prior.number(causes)
+        number = own + prior.further(len(causes)) + like * np.log(SAME)
         for cause in causes:  # by another term
-            number[self.names == cause] = prior.number(causes) - prior.share[cause]
-        alone = prior.number(causes) if causes else self.linear.critical
-        logs = self.shares + np.where(self.causes, number, alone) - self._again(members)
+            number[self.names == cause] = own - prior.share[cause]
+        number = np.where(self.causes, number, own if causes else self.linear.critical)
+        logs = self.shares + number - self._again(members)
         taken = np.isin(self.families, self.families[list(members)])
         taken |= self.causes & (len(causes) >= self.linear.most)
         return np.where(taken, -np.inf, logs + self.shares[list(members)].sum())

@@ -321,9 +321,9 @@ class Weighing:
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
         extras = tuple(
-            Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)))
+            Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)), t.label)
             if t.formula
-            else Extra(None, t.name, w, t.channels, t.columns, t.log_prior)
+            else Extra(None, t.name, w, t.channels, t.columns, t.log_prior, t.label)
             for t, w in scatters
         )
         problem = self.whole.without(own.key[2]).beside(tuple(e.term for e in extras))
