@@ -99,7 +99,7 @@ def test_ctrl_c_while_the_program_loads(started, module):
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are interrupted otherwise there")
 def test_ctrl_c_ends_an_integration(started, tmp_path):
-    rows = "".join(f"{k},{100 + 50 * (k % 2)},1500,25\n" for k in range(20_000))
+    rows = "".join(f"{k},{100 + 50 * (k % 2)},1500,25\n" for k in range(200_000))
     head = "time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"
     (tmp_path / "duty.csv").write_text(head + rows)
     process = started(

@@ -17,8 +17,6 @@ from ..model.noise import alike, by_name, input_scatter, terms
 from ..model.observe import Observed
 from .scales import most_likely
 
-#: Half widths of its prior to which a cause is followed.
-OUT = 2.0
 #: Shapes stay inside so many deviations.
 FAR = 2.4
 
@@ -150,7 +148,6 @@ class Problem:
     ) -> None:
         self.campaigns, self.day_sd, self.aside, self.more = tuple(campaigns), day_sd, aside, more
         self.data = campaigns[0]
-        self._bends: dict[Formula, list[tuple[Acting, np.ndarray]]] = {}
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
         self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
@@ -253,20 +250,6 @@ class Problem:
         k = int(np.searchsorted(np.cumsum(sizes), aside.number, side="right"))
         o, number = self.campaigns[k], aside.number - sum(sizes[:k])
         return k, aside.sensor or o.read[o.kind[number]].name
-
-    def bends(self, formulas: Sequence[Formula]) -> list[list[tuple[Acting, np.ndarray]]]:
-        """Of each formula, as the file has the rig: far out, and its secant less its slope (M,), of one half width."""
-        at, new = np.zeros(self.nz + 1), [f for f in formulas if f not in self._bends]
-        slopes = self.data.tangents(at, [], [(f, np.zeros(f.size)) for f in new]) if new else np.empty(0)
-        without = self.data.shown_by(at, []) if new else np.empty(0)
-        for f, slope in zip(new, slopes.T, strict=True):
-            found = self._bends.setdefault(f, [])
-            for size in np.clip((-OUT, OUT), *f.limits):
-                acting, bend = Acting(f, np.r_[size, np.zeros(f.size - 1)]), np.zeros(self.m)
-                if size and np.isfinite(shown := self.data.shown_by(at, [(f, acting.t)])).all():
-                    bend[self.own] = (shown - without) / size - slope
-                    found.append((acting, bend))
-        return [self._bends[f] for f in formulas]
 
     def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
         """Effects (M, k) of one prior half width of each candidate beside what acts.

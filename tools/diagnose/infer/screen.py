@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -27,8 +27,6 @@ THRESHOLDS = (6, 8)
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
 PACES = (1.0, 2.5)
-#: Standard deviations by which an effect far out has to differ from what its slope says, to be judged by itself.
-BENT = 1.0
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.
@@ -148,23 +146,7 @@ def screened(problem: Problem, near: Look, views: Sequence[View], formulas: Sequ
     candidates, owner = samples(formulas, changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    far = list(bent(problem, formulas, views[0]))
-    middle = np.searchsorted(owner, number := np.array([k for k, _, _ in far], dtype=int))
-    bends = np.array([bend for _, _, bend in far]).reshape(len(far), problem.m).T
-    candidates = (*candidates, *(acting for _, acting, _ in far))
-    return judged(candidates, np.r_[owner, number], np.hstack([effects, effects[:, middle] + bends]), views)
-
-
-def bent(problem: Problem, formulas: Sequence[Formula], view: View) -> Iterator[tuple[int, Acting, np.ndarray]]:
-    """Number of a formula, the cause far out, and how its secant differs from its slope (M,), where that is seen.
-
-    Most of an effect may be what nuisances do as well, and what is left of it may have another sign far out.
-    """
-    machine = [k for k, f in enumerate(formulas) if f.paths and not (f.paced or f.form.regime)]
-    for k, found in zip(machine, problem.bends([formulas[k] for k in machine]), strict=True):
-        for acting, bend in found:
-            if np.linalg.norm(acting.t[0] * view.white(bend)) > BENT:
-                yield k, acting, bend
+    return judged(candidates, owner, effects, views)
 
 
 def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Screen:
