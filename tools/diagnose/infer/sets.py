@@ -279,30 +279,40 @@ class Whitened:
                 count[family] = count.get(family, 0) + 1
                 yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
 
-    def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter]]:
-        """Scatters nearby, and the log joint density there of a set or of none: less, more, others, other scales."""
-        sides, scales = self.scatter.beside, self.scatter.scales
+    def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
+        """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
+
+        Left of the set are all members, none, or all but those of one family or instrument, which a scatter may replace.
+        """
+        sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
+        groups = [table.kinds[k] or table.families[k] for k in own.members]
+        left = [[k for k, group in enumerate(groups) if group != gone] for gone in dict.fromkeys(["", *groups])]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
-            near = self if beside == sides else Whitened(self.table, Scatter(scales, beside))
-            for members, widths in dict.fromkeys([(own.members, own.widths), ((), ())]):
-                base = near.scored(members, widths)
-                yield base.log, near.scatter
+            near = self if beside == sides else Whitened(table, Scatter(scales, beside))
+            for kept in dict.fromkeys(map(tuple, [*left, []])):
+                base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
+                yield base.log, near.scatter, base
                 yield from near._further(base)
         columns, linear = self.table.columns[:, list(own.members)] * np.array(own.widths), self.table.linear
         tied = columns @ columns.T + linear.scattered(self.scatter)
         found = linear.at(scales).fitted(linear.residual, linear.known + tied).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
-            yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides)
+            yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
-    def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter]]:
-        """One more scatter beside a set, at its likeliest width: log joint density, scatter."""
+    @cached_property
+    def columns(self) -> list[np.ndarray]:
+        """Whitened columns of all scatters."""
+        return [self.white(t.columns) for t in self.table.linear.terms[self.table.n :]]
+
+    def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
+        """One more scatter beside a set, at its likeliest width: log joint density, scatter, the set."""
         terms, kept = self.table.linear.terms, [*own.members, *(k for k, _ in self.scatter.beside)]
         turned, b, _ = self.beside(own.members, own.widths)
         logs = self.table.log_priors(kept) - self.table.log_prior(kept)
         for k in range(self.table.n, len(terms)):
             if not np.isfinite(logs[k]):
                 continue
-            C = self.white(terms[k].columns)
+            C = self.columns[k - self.table.n]
             tie = turned.T @ C
             q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
             s = turn.T @ (C.T @ self.e - b @ tie)
@@ -311,7 +321,7 @@ class Whitened:
             found = (0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)).sum(axis=1)
             best = int(np.argmax(found))
             beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
-            yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside)
+            yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside), own
 
 
 def search(
@@ -342,8 +352,8 @@ def search(
             if s.terms not in found or found[s.terms].log < s.log:
                 found[s.terms] = s
         best = max(best, sets[0].log)
-        for log, other in white.scatters(sets[0]):
+        for log, other, base in white.scatters(sets[0]):
             if other not in seen and log > best - WINDOW:
                 number += 1
-                heapq.heappush(queue, (-log, number, other, tuple(sets[:3])))
+                heapq.heappush(queue, (-log, number, other, (base, *sets[:2])))
     return sorted(found.values(), key=lambda s: (-s.log, s.terms))

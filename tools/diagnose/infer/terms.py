@@ -11,6 +11,7 @@ from ..model.formula import Formula
 from ..model.noise import per_group, walk
 from .prior import GROSS, OUTSIDE, Prior
 from .problem import Acting, Aside, Look, Problem
+from .screen import PACES
 
 #: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
 SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
@@ -66,7 +67,7 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
     """Causes drawn anew in each test or mounting, or wandering from test to test."""
     if not formulas:
         return
-    own = [Acting(f, np.r_[float(f.paced), np.zeros(f.size - 1)]) for f in formulas]
+    own = [Acting(f, np.r_[f.paced * PACES[-1], np.zeros(f.size - 1)]) for f in formulas]
     effects = problem.tangents(look.z, look.acting, own)
     for formula, effect in zip(formulas, effects.T, strict=True):
         columns = _columns(problem, formula, effect)
@@ -85,6 +86,8 @@ def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarr
         own = per_group(effect[problem.own], labels[test]) if labels.max() else None
     else:
         own = (walk if formula.form.spread == "walk" else per_group)(effect[problem.own], test)
+        if formula.paced:  # dwells are only shortened: the sizes are those of half a normal distribution
+            own = np.column_stack([np.sqrt(1 - 2 / np.pi) * own, np.sqrt(2 / np.pi) * own.sum(axis=1)])
     if own is None:
         return None
     whole = np.zeros((problem.m, own.shape[1]))

@@ -15,8 +15,6 @@ from .forms import COURSES, Context, factors
 EARLY = 7200.0
 #: Rounding of a pace near zero.
 ROUND = 0.1
-#: Share of the form in which each test is early by a share of its own.
-AT_RANDOM = 0.15
 #: How much of the size each half has, by the form's name, and the forms' weights.
 HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
 
@@ -51,8 +49,8 @@ def not_stationary(at: Context) -> Cause:
     for minutes, words in ((False, ""), (True, "by minutes")):
         for name, (first, later, weight) in HALVES.items():
             known = ", ".join(filter(None, (words, name)))
-            forms.append(Form(known, (1 - AT_RANDOM) * weight / 2, pace=pace(first, later, minutes)))
-    forms.append(Form("at random", AT_RANDOM, pace=pace(1.0, 1.0, False), spread="test"))
+            forms.append(Form(known, weight / 3, pace=pace(first, later, minutes)))
+    forms.append(Form("at random", 1 / 3, pace=pace(1.0, 1.0, False), spread="test"))
     return entry("procedure.not_stationary", at).with_forms(forms)
 
 
