@@ -282,7 +282,7 @@ class Whitened:
     def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
         """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
 
-        Left of the set are all members, none, or all but those of one family or instrument, which a scatter may replace.
+        Left of the set are all members, none, or all but those of one family or instrument that a scatter may replace.
         """
         sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]

@@ -74,8 +74,9 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
         if columns is not None and np.isfinite(columns).all():
             cause = formula.cause
             log = prior.share[cause.id] + float(np.log(formula.form.weight))
+            widths = SPREADS[SPREADS >= 1] if formula.paced else SPREADS  # less shows less than in proportion
             beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
-            yield Term(cause.id, cause.family + beside, log, columns, SPREADS, formula=formula)
+            yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula)
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:
@@ -88,7 +89,7 @@ def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarr
         own = (walk if formula.form.spread == "walk" else per_group)(effect[problem.own], test)
         if formula.paced:  # dwells are only shortened: the sizes are those of half a normal distribution
             own = np.column_stack([np.sqrt(1 - 2 / np.pi) * own, np.sqrt(2 / np.pi) * own.sum(axis=1)])
-    if own is None:
+    if own is None or np.count_nonzero(own, axis=0).max() < 2:  # one reading each: that is its own scatter
         return None
     whole = np.zeros((problem.m, own.shape[1]))
     whole[problem.own] = own
@@ -96,18 +97,21 @@ def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarr
 
 
 def remainders(problem: Problem) -> Iterator[Term]:
-    """What no cause of the library is: smooth in the conditions or by test, in thermometers, one, others, or all."""
+    """What no cause of the library is: smooth in the conditions, in thermometers, one, others, or all; or by test.
+
+    What errs by test in one sensor alone is its own error, and has a name.
+    """
     o = problem.data
     warm = [i for i, s in enumerate(o.read) if s.kind.endswith("_temp")]
     other = [i for i in range(len(o.read)) if i not in warm]
     groups = [warm, *([[i] for i in warm] if len(warm) > 1 else []), *([other, warm + other] if other else [])]
     groups = [g for g in groups if g]
     tests = o.campaign.test[o.row]
-    kernels = {"smooth in the conditions": problem.alike}
+    kernels = [("smooth in the conditions", problem.alike, groups)]
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
-        kernels["from test to test"] = tests[:, None] == tests
-    log = float(np.log(OUTSIDE) - np.log(len(groups) * len(kernels)))
-    for name, kernel in kernels.items():
+        kernels.append(("from test to test", tests[:, None] == tests, [g for g in groups if len(g) > 1]))
+    log = float(np.log(OUTSIDE) - np.log(sum(len(groups) for _, _, groups in kernels)))
+    for name, kernel, groups in kernels:
         variance, vectors = np.linalg.eigh(kernel * problem.same)
         kept = variance > FAINT * variance[-1]
         root = vectors[:, kept] * np.sqrt(variance[kept])

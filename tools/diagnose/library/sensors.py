@@ -175,7 +175,7 @@ class _Instruments:
             modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if both_ways)]
             total = sum(m.weight for m in modes)
             yield self.cause("since", [replace(m, weight=m.weight / total) for m in modes])
-            yield self.cause("random_walk", [Mode("", 1.0, _one, spread="walk", turns=True)])
+            yield self.cause("random_walk", WANDERING)
             if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in known]:
                 yield self.frozen(hanging)
         if "mounting" in known:
@@ -251,6 +251,10 @@ DIRECTIONS = (
     Mode("opposite signs", 0.4, lambda theta, row, value: row.direction),
     Mode("driving only", 0.3, lambda theta, row, value: (1 + row.direction) / 2),
     Mode("driven only", 0.3, lambda theta, row, value: (1 - row.direction) / 2),
+)
+WANDERING = (
+    Mode("", 0.5, _one, spread="walk", turns=True),
+    Mode("anew in each test", 0.5, _one, spread="test", turns=True),
 )
 ADJUSTED = Mostly("zero", "1", "where the reading is right: 0 at the first test, 1 at the last", 0.0, 1.0)
 
