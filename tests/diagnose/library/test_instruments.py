@@ -145,7 +145,7 @@ def test_a_room_probe_in_the_warm_air_reads_the_more_too_high_the_warmer_the_mac
 
 
 def test_spreads_are_told(planetary):
-    assert {f.spread for f in planetary.cause("sensor.torque.random_walk").forms} == {"walk"}
+    assert {f.spread for f in planetary.cause("sensor.torque.random_walk").forms} == {"walk", "test"}
     assert {f.spread for f in planetary.cause("sensor.torque.mounting").forms} == {"mounting"}
     assert {f.spread for f in planetary.cause("procedure.day_scatter").forms} == {"test"}
 

@@ -19,6 +19,8 @@ from .scales import most_likely
 
 #: Shapes stay inside so many deviations.
 FAR = 2.4
+#: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
+PACES = (1.0, 2.5)
 
 
 @dataclass(frozen=True, order=True)

@@ -12,7 +12,7 @@ from scipy.special import ndtri
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import View, log_bayes_factors
-from .problem import Acting, Look, Problem, limits
+from .problem import PACES, Acting, Look, Problem, limits
 
 #: Start points of a form for its first shape, beside the one in the middle.
 FIRST = 3
@@ -25,8 +25,6 @@ THRESHOLDS = (6, 8)
 #: Places of a shape that mostly stands at its bound: there, between, and at the other bound. Of several such shapes all
 #: combinations.
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
-#: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
-PACES = (1.0, 2.5)
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.

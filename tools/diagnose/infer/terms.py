@@ -10,8 +10,7 @@ import numpy as np
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
 from .prior import GROSS, OUTSIDE, Prior
-from .problem import Acting, Aside, Look, Problem
-from .screen import PACES
+from .problem import PACES, Acting, Aside, Look, Problem
 
 #: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
 SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
