@@ -251,25 +251,33 @@ class Weighing:
             yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
 
     def _exchange(self) -> None:
-        """Fits what promises most in place of each cause of the leading set, the others kept.
+        """Fits what promises most in place of each cause of the leading set, and beside the best sets of fewer causes.
 
         To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none.
         """
-        key, best = max(self.hypotheses.items(), key=lambda item: item[1].log_joint)
-        acting, noise = best.fit.look.acting, tuple(e.term for e in best.extras)
-        if len(acting) < 2 or key in self.exchanged:
-            return
-        self.exchanged.add(key)
+        ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
+        leader, best = ranked[0]
+        acting = best.fit.look.acting
+        for a in acting if len(acting) > 1 and leader not in self.exchanged else ():
+            self._join_all(leader, best, [b for b in acting if b is not a], {a.id})
+        self.exchanged.add(leader)
+        for n in range(1, len(acting)):
+            key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
+            if key not in self.exchanged:
+                self.exchanged.add(key)
+                self._join_all(key, fewer, fewer.fit.look.acting, set())
+
+    def _join_all(self, key: Key, known: Hypothesis, rest: Sequence[Acting], gone: Set[str]) -> None:
+        """Fits what promises most beside some causes of a hypothesis, without those that are gone."""
+        fit, noise = known.fit, tuple(e.term for e in known.extras)
         problem = self.whole.without(key[2]).beside(noise)
-        for a in acting:
-            rest = [b for b in acting if b is not a]
-            with suppress(SolveError):
-                near = fitted(problem, rest, best.fit.look.z, best.fit.noise.scales)
-                look = self.screened(near, problem)
-                taken = {a.id, *(b.formula.cause.family for b in rest)}
-                for start, logs in self._promising(look, taken, EXCHANGED):
-                    forms = {c: known for c, known in best.forms.items() if c != a.id} | {start.acting.id: logs}
-                    self._fit_joined(near, problem, start, key[1:], forms, best.extras)
+        with suppress(SolveError):
+            near = fitted(problem, rest, fit.look.z, fit.noise.scales) if gone else fit
+            look = self.screened(near, problem)
+            taken = {*gone, *(b.formula.cause.family for b in rest)}
+            for start, logs in self._promising(look, taken, EXCHANGED):
+                forms = {c: each for c, each in known.forms.items() if c not in gone} | {start.acting.id: logs}
+                self._fit_joined(near, problem, start, key[1:], forms, known.extras)
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
