@@ -77,7 +77,7 @@ def with_forms(hypotheses: Mapping[Key, Hypothesis]) -> list[Hypothesis]:
     """Hypotheses of any forms; forms that were not fitted count with the best of those that differ in forms alone."""
     alike: dict[tuple[object, ...], list[Hypothesis]] = {}
     for key, h in hypotheses.items():
-        alike.setdefault((frozenset(h.causes), *key[1:]), []).append(h)
+        alike.setdefault((frozenset(h.fit.causes), *key[1:]), []).append(h)
     found = []
     for own in alike.values():
         own.sort(key=lambda h: -h.log_joint)
