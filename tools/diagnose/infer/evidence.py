@@ -137,7 +137,7 @@ def split_error(
 
     Args:
         covariance: of all entries (M, M)
-        passing: the part of it that is another in each test or mounting (M, M)
+        passing: of what is another in each test or mounting, with all entries (M, M)
         residual: (M,)
         kept, held: numbers of entries
     """

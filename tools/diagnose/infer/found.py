@@ -30,6 +30,7 @@ class Extra:
         columns: at size one (M, k)
         log_prior: of its form, or of the remainder beside a hypothesis
         label: that of the term that it is
+        passing: what of the columns is another in each test or mounting (M, k)
     """
 
     cause: str | None
@@ -39,11 +40,13 @@ class Extra:
     columns: np.ndarray
     log_prior: float
     label: str
+    passing: np.ndarray | None
 
     @property
     def term(self) -> Term:
         """Its covariance."""
-        return Term(self.form, self.size * self.columns, passing=True)
+        passing = None if self.passing is None else self.size * self.passing
+        return Term(self.form, self.size * self.columns, passing=passing)
 
 
 @dataclass(frozen=True)

@@ -97,18 +97,19 @@ class Noise:
     @cached_property
     def covariance(self) -> np.ndarray:
         """The whole (M, M)."""
-        return self._summed([True] * len(self.terms))
+        return summed(self.terms, self._all_scales, self.terms[0].m)
 
     @property
     def passing(self) -> np.ndarray:
-        """The part of it that is another in each test or mounting (M, M)."""
-        return self._summed([t.passing for t in self.terms])
+        """What of the rows is another in each test or mounting, with the columns as they are (M, M)."""
+        own = zip(self.terms, np.exp(2 * self._all_scales), strict=True)
+        return np.asarray(sum(v * t.passing @ t.effects.T for t, v in own if t.passing is not None))
 
-    def _summed(self, chosen: Sequence[bool]) -> np.ndarray:
+    @property
+    def _all_scales(self) -> np.ndarray:
         scales = np.zeros(len(self.terms))
         scales[[t.loose > 0 for t in self.terms]] = self.scales
-        own = [t for t, mine in zip(self.terms, chosen, strict=True) if mine]
-        return summed(own, scales[list(chosen)], self.terms[0].m)
+        return scales
 
     @property
     def log_prior(self) -> float:

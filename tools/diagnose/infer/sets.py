@@ -110,9 +110,11 @@ class Linear:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         columns = [self.terms[k].columns for k in own.members]
         G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
-        beside, noise = self.scattered(own.scatter), self.at(own.scatter.scales)
-        whole = noise.covariance + self.known + beside + G @ G.T
-        return split_error(whole, noise.passing + beside, self.residual, kept, held)
+        noise, passing = self.at(own.scatter.scales), self.at(own.scatter.scales).passing
+        for t, width in ((self.terms[k], width) for k, width in own.scatter.beside):
+            passing = passing if t.passing is None else passing + width**2 * t.passing @ t.columns.T
+        whole = noise.covariance + self.known + self.scattered(own.scatter) + G @ G.T
+        return split_error(whole, passing, self.residual, kept, held)
 
 
 class Table:

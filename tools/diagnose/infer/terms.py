@@ -18,6 +18,8 @@ SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
 REMAINDERS = np.array([2.0, 4.0, 8.0, 16.0])
 #: Standard deviations of a gross reading's error, in those of one reading.
 ERRORS = np.array([6.0, 15.0, 40.0])
+#: What a remainder is that differs from test to test.
+BY_TEST = "from test to test"
 #: Shares of the largest variance of a remainder below which its directions are left out.
 FAINT = 0.01
 
@@ -37,6 +39,7 @@ class Term:
         formula: form of a cause; None: a gross reading or a remainder
         aside: the reading, of a gross one
         channels: sensors in which a remainder acts
+        passing: what of the columns is another in each test or mounting (M, k), and not the mean of all
     """
 
     name: str
@@ -50,6 +53,7 @@ class Term:
     formula: Formula | None = None
     aside: Aside | None = None
     channels: tuple[str, ...] = ()
+    passing: np.ndarray | None = None
 
     @property
     def scatters(self) -> bool:
@@ -69,30 +73,28 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
     own = [Acting(f, np.r_[f.paced * PACES[-1], np.zeros(f.size - 1)]) for f in formulas]
     effects = problem.tangents(look.z, look.acting, own)
     for formula, effect in zip(formulas, effects.T, strict=True):
-        columns = _columns(problem, formula, effect)
-        if columns is not None and np.isfinite(columns).all():
+        columns, passing = _columns(problem, formula, effect)
+        if (
+            np.count_nonzero(columns, axis=0).max() > 1 and np.isfinite(columns).all()
+        ):  # else it is readings' own scatter
             cause = formula.cause
             log = prior.share[cause.id] + float(np.log(formula.form.weight))
             widths = SPREADS[SPREADS >= 1] if formula.paced else SPREADS  # less shows less than in proportion
             beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
-            yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula)
+            yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula, passing=passing)
 
 
-def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:
-    o = problem.data
-    test = o.campaign.test[o.row]
-    if formula.form.spread == "mounting":
-        labels = np.unique(o.campaign.mounting, return_inverse=True)[1]
-        own = per_group(effect[problem.own], labels[test]) if labels.max() else None
-    else:
-        own = (walk if formula.form.spread == "walk" else per_group)(effect[problem.own], test)
-        if formula.paced:  # dwells are only shortened: the sizes are those of half a normal distribution
-            own = np.column_stack([np.sqrt(1 - 2 / np.pi) * own, np.sqrt(2 / np.pi) * own.sum(axis=1)])
-    if own is None or np.count_nonzero(own, axis=0).max() < 2:  # one reading each: that is its own scatter
-        return None
-    whole = np.zeros((problem.m, own.shape[1]))
-    whole[problem.own] = own
-    return whole
+def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What is anew in each test or mounting, or adds up from test to test (M, k), and how far it is from its mean."""
+    c, spread = problem.data.campaign, formula.form.spread
+    groups = np.unique(c.mounting, return_inverse=True)[1] if spread == "mounting" else np.arange(c.n_tests)
+    of_test = (walk if spread == "walk" else per_group)(np.ones(c.n_tests), groups)
+    if formula.paced:  # dwells are only shortened: the sizes are those of half a normal distribution
+        of_test = np.column_stack([np.sqrt(1 - 2 / np.pi) * of_test, np.full(c.n_tests, np.sqrt(2 / np.pi))])
+    test = c.test[problem.data.row]
+    found = np.zeros((2, problem.m, of_test.shape[1]))
+    found[:, problem.own] = effect[problem.own, None] * np.array([of_test, of_test - of_test.mean(axis=0)])[:, test]
+    return found[0], found[1]
 
 
 def remainders(problem: Problem) -> Iterator[Term]:
@@ -108,7 +110,7 @@ def remainders(problem: Problem) -> Iterator[Term]:
     tests = o.campaign.test[o.row]
     kernels = [("smooth in the conditions", problem.alike, groups)]
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
-        kernels.append(("from test to test", tests[:, None] == tests, [g for g in groups if len(g) > 1]))
+        kernels.append((BY_TEST, tests[:, None] == tests, [g for g in groups if len(g) > 1]))
     log = float(np.log(OUTSIDE) - np.log(sum(len(groups) for _, _, groups in kernels)))
     for name, kernel, groups in kernels:
         variance, vectors = np.linalg.eigh(kernel * problem.same)
@@ -121,7 +123,8 @@ def remainders(problem: Problem) -> Iterator[Term]:
             columns[problem.own] = own
             channels = tuple(o.read[i].name for i in group)
             columns = columns[:, (columns**2).sum(axis=0) > 0]
-            yield Term(f"remainder {name}", "remainder", log, columns, REMAINDERS, channels=channels)
+            passing = columns if name == BY_TEST else None
+            yield Term(f"remainder {name}", "remainder", log, columns, REMAINDERS, channels=channels, passing=passing)
 
 
 def gross(problem: Problem, look: Look) -> Iterator[Term]:

@@ -328,12 +328,7 @@ class Weighing:
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
-        extras = tuple(
-            Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)), t.label)
-            if t.formula
-            else Extra(None, t.name, w, t.channels, t.columns, t.log_prior, t.label)
-            for t, w in scatters
-        )
+        extras = tuple(_extra(t, w) for t, w in scatters)
         problem = self.whole.without(own.key[2]).beside(tuple(e.term for e in extras))
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
@@ -373,6 +368,14 @@ class Weighing:
 def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
     """The gross readings of a set."""
     return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
+
+
+def _extra(t: Term, width: float) -> Extra:
+    """A term that scatters, of a width."""
+    if t.formula is None:
+        return Extra(None, t.name, width, t.channels, t.columns, t.log_prior, t.label, t.passing)
+    form = t.formula.form
+    return Extra(t.name, form.name, width, (), t.columns, float(np.log(form.weight)), t.label, t.passing)
 
 
 def _term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:

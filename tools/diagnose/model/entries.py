@@ -90,7 +90,8 @@ class Seen:
 class Term:
     """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
 
-    `loose` is the prior's standard deviation of its log scale. What is `passing` is another in each test or mounting.
+    `loose` is the prior's standard deviation of its log scale, `passing` (m, k) what of the columns is another in each test
+    or mounting.
     """
 
     name: str
@@ -98,7 +99,7 @@ class Term:
     variance: np.ndarray | None = None
     loose: float = 0.0
     covariance: np.ndarray | None = None
-    passing: bool = False
+    passing: np.ndarray | None = None
 
     @property
     def m(self) -> int:

@@ -201,11 +201,11 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
     tied = {name: columns.sum(axis=1, keepdims=True) for name, columns in by_name(fixed, sizes).items()}
     found += [Term(f"tolerance of {name}", column) for name, column in tied.items()]
     days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
-    found.append(Term("days", stacked(days, sizes), loose=DAY, passing=True))
+    found.append(Term("days", own := stacked(days, sizes), loose=DAY, passing=own))
     found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
     fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
     if fillings:
-        found.append(Term("fillings", stacked(fillings, sizes), passing=True))
+        found.append(Term("fillings", own := stacked(fillings, sizes), passing=own))
     measured = len(campaigns) - points
     names = np.unique([oil for o in campaigns for oil in o.campaign.oil])
     if len(names) > 1:
