@@ -90,8 +90,8 @@ class Seen:
 class Term:
     """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
 
-    `loose` is the prior's standard deviation of its log scale, `passing` (m, k) what of the columns is another in each test
-    or mounting.
+    `loose` is the prior's standard deviation of its log scale. What of the columns is another in each test or mounting, and
+    not the mean of all, is `passing` (m, k).
     """
 
     name: str
