@@ -90,7 +90,7 @@ class Seen:
 class Term:
     """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
 
-    `loose` is the prior's standard deviation of its log scale. What of the columns is another in each test or mounting, and
+    `loose` is the prior's standard deviation of its log scale. What of the columns is another in each test or mounting,
     not the mean of all, is `passing` (m, k).
     """
 
