@@ -148,8 +148,8 @@ def gain(findings: Findings) -> list[Table]:
             (*head, *rivals, "scatter of one reading"),
             rows,
             "Root mean square. The whole inference is repeated without the readings left out. Before and after: by"
-            " what lasts. Interpolated: with what is another in each test or mounting as well, fillings, zeros that"
-            " wander, remainders, which says nothing of a new campaign.",
+            " what lasts, and by the mean of errors that do not. Interpolated: with what is another in each test or"
+            " mounting as well, fillings, zeros that wander, which says nothing of a new campaign.",
         ),
         Table("The rig played over these data, root mean square", ("channel", "calibrated", "extended"), played),
     ]
