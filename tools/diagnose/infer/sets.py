@@ -124,6 +124,9 @@ class Table:
         self.linear, self.n = linear, linear.n
         own = linear.terms[: self.n]
         self.columns = np.concatenate([t.columns for t in own], axis=1)
+        #: Columns of all scatters, and where those of the next one begin.
+        self.scatters = np.concatenate([self.columns[:, :0], *(t.columns for t in linear.terms[self.n :])], axis=1)
+        self.parts = np.cumsum([t.columns.shape[1] for t in linear.terms[self.n : -1]])
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
         self.families = np.array([t.family for t in linear.terms])
@@ -304,7 +307,7 @@ class Whitened:
     @cached_property
     def columns(self) -> list[np.ndarray]:
         """Whitened columns of all scatters."""
-        return [self.white(t.columns) for t in self.table.linear.terms[self.table.n :]]
+        return np.split(self.white(self.table.scatters), self.table.parts, axis=1)
 
     def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
         """One more scatter beside a set, at its likeliest width: log joint density, scatter, the set."""
