@@ -82,7 +82,7 @@ def log_bf(s: Setting, campaign: Campaign) -> dict[str, float]:
     """Log Bayes factor of the best form of each cause at the first look."""
     problem = Problem([observed(s, campaign)], 0.015)
     null = fitted(problem, (), np.zeros(problem.nz))
-    found = screened(problem, null.look, null.views(problem), s.formulas).by_form(len(s.formulas))
+    found = screened(problem, null.look, null.linear(problem), s.formulas).by_form(len(s.formulas))
     best: dict[str, float] = {}
     for f, log in zip(s.formulas, found, strict=True):
         best[f.cause.id] = max(best.get(f.cause.id, -np.inf), float(log))

@@ -130,7 +130,7 @@ def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
     problem.measured = null.look.shown + sd * rng.standard_normal(problem.m) + zero
     ids = ("sensor.torque.offset", "sensor.oil_temp.offset", CAUSE)
     formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
-    first = screened(problem, null.look, null.views(problem), formulas)
+    first = screened(problem, null.look, null.linear(problem), formulas)
     found = replace(made.found, problem=problem, formulas=formulas, first=first)
     told = {v.channel: v for v in pictures.views(found)}
     assert set(told) == {s.name for s in o.read}

@@ -54,25 +54,9 @@ class White:
         """Logarithm of the covariance's determinant."""
         return float(2 * np.log(np.diag(self.L)).sum())
 
-    def log_densities(self, e: np.ndarray) -> np.ndarray:
-        """Of columns of whitened residuals (M, k), without the constant of 2 pi (k,)."""
-        return np.asarray(-0.5 * (e**2).sum(axis=0) - 0.5 * self.log_det)
-
     def log_density(self, e: np.ndarray) -> float:
         """Log density of a whitened residual, without the constant of 2 pi."""
         return float(-0.5 * e @ e - 0.5 * self.log_det)
-
-
-@dataclass(frozen=True)
-class View:
-    """Whitening by all that is uncertain, the residual in it, the log of its density over that as found, and how much
-    of it is the prior of the scatter's scales.
-    """
-
-    white: White
-    e: np.ndarray
-    log: float = 0.0
-    prior: float = 0.0
 
 
 def log_bayes_factors(

@@ -11,7 +11,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ....model.errors import SolveError
-from .evidence import WIDTHS, View, White, log_bayes_factor
+from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
 #: Steps at most.
@@ -34,8 +34,6 @@ LONGEST = 1.5
 LONGEST_SIZE = 1.0
 #: A shape.
 LONGEST_SHAPE = 0.8
-#: A scale whose logarithm is beyond this has grown.
-GROWN = 0.2
 #: Share of the variance of what a form leaves that all channels have together; each has the rest for itself.
 TOGETHER = 0.5
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
@@ -70,20 +68,6 @@ class Fit:
     def split(self, problem: Problem, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes of another point of the same vector."""
         return _Vector(problem, self.look.acting).split(x)
-
-    def views(self, problem: Problem) -> list[View]:
-        """The linearised problem beside this hypothesis, with the scatter as found and as stated.
-
-        What is not yet explained need not be scatter: a scale that has grown hides it. As stated, it shows.
-        """
-        white, e = self.linear(problem)
-        found = [View(white, e)]
-        if np.abs(self.noise.scales).max(initial=0.0) > GROWN:
-            stated = replace(self, noise=replace(self.noise, scales=np.zeros_like(self.noise.scales)))
-            other, own = stated.linear(problem)
-            prior = -self.noise.log_prior
-            found.append(View(other, own, other.log_density(own) - white.log_density(e) + prior, prior))
-        return found
 
     def moved(self, problem: Problem, effect: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes where they go, to first order, as something with an effect (M,) joins."""

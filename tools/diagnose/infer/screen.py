@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from ..library.cause import Mostly
 from ..model.formula import Formula
-from .evidence import View, log_bayes_factors
+from .evidence import White, log_bayes_factors
 from .problem import PACES, Acting, Look, Problem, limits
 
 #: Start points of a form for its first shape, beside the one in the middle.
@@ -48,7 +48,6 @@ class Screen:
         owner: number of each candidate's formula (k,)
         effects: of one prior half width (M, k)
         white: the same, whitened by what the fit leaves uncertain (M, k)
-        views: scatter as found and as stated
         log_bf: log Bayes factor of each candidate beside what acts (k,)
         sizes: their most likely sizes, in prior half widths (k,)
     """
@@ -57,7 +56,6 @@ class Screen:
     owner: np.ndarray
     effects: np.ndarray
     white: np.ndarray
-    views: tuple[View, ...]
     log_bf: np.ndarray
     sizes: np.ndarray
 
@@ -132,33 +130,23 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def screened(problem: Problem, near: Look, views: Sequence[View], formulas: Sequence[Formula]) -> Screen:
+def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], formulas: Sequence[Formula]) -> Screen:
     """What every form would explain beside a fitted hypothesis.
 
     Args:
         problem: data and model
         near: where it was fitted
-        views: the problem linearised there, by scatter as found and as stated
+        linear: whitening by all that is uncertain there, and the residual in it
         formulas: forms of causes
     """
     candidates, owner = samples(formulas, changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    return judged(candidates, owner, effects, views)
-
-
-def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Screen:
-    """Effects weighed against a whitened residual, by scatter as found or as stated."""
-    low, high = limits(candidates)
-    white = [view.white(effects) for view in views]
-    logs, sizes = [], []
-    for g, view in zip(white, views, strict=True):
-        s, q = g.T @ view.e, (g**2).sum(axis=0)
-        logs.append(view.log + log_bayes_factors(s, q, low, high))
-        sizes.append(np.clip(s / (q + 0.1), low, high))
-    best = np.argmax(logs, axis=0)
-    log_bf = np.logaddexp.reduce(logs, axis=0) - np.log(len(views))
-    return Screen(candidates, owner, effects, white[0], tuple(views), log_bf, np.choose(best, sizes))
+    white, e = linear
+    g, (low, high) = white(effects), limits(candidates)
+    s, q = g.T @ e, (g**2).sum(axis=0)
+    log_bf = log_bayes_factors(s, q, low, high)
+    return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), low, high))
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
@@ -169,13 +157,6 @@ def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
         weights: log prior weight of each candidate, all together 1
         seed: of the draws
     """
-    rng = np.random.default_rng(seed)
-    drawn = rng.standard_normal((len(found.effects), DRAWS))
-    E, none = found.views[0].white.L @ drawn, found.views[0].white.log_densities(drawn)
-    low, high = limits(found.candidates)
-    logs = []
-    for view in found.views:
-        g, e = view.white(found.effects), view.white(E)
-        own = log_bayes_factors((g.T @ e).T, (g**2).sum(axis=0), low, high) + weights
-        logs.append(np.logaddexp.reduce(own, axis=1) + view.white.log_densities(e) - none + view.prior)
-    return np.asarray(np.logaddexp.reduce(logs, axis=0) - np.log(len(logs)))
+    e = np.random.default_rng(seed).standard_normal((len(found.white), DRAWS))
+    logs = log_bayes_factors((found.white.T @ e).T, (found.white**2).sum(axis=0), *limits(found.candidates))
+    return np.asarray(np.logaddexp.reduce(logs + weights, axis=1))

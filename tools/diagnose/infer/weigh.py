@@ -157,7 +157,7 @@ class Weighing:
 
     def screened(self, near: Fit, problem: Problem) -> Screen:
         """What every cause would explain beside a fitted hypothesis."""
-        return screened(problem, near.look, near.views(problem), self.formulas)
+        return screened(problem, near.look, near.linear(problem), self.formulas)
 
     def _weights(self, look: Screen) -> np.ndarray:
         """Log prior weight of each candidate, all together 1."""
