@@ -74,14 +74,13 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
     effects = problem.tangents(look.z, look.acting, own)
     for formula, effect in zip(formulas, effects.T, strict=True):
         columns, passing = _columns(problem, formula, effect)
-        if (
-            np.count_nonzero(columns, axis=0).max() > 1 and np.isfinite(columns).all()
-        ):  # else it is readings' own scatter
-            cause = formula.cause
-            log = prior.share[cause.id] + float(np.log(formula.form.weight))
-            widths = SPREADS[SPREADS >= 1] if formula.paced else SPREADS  # less shows less than in proportion
-            beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
-            yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula, passing=passing)
+        if np.count_nonzero(columns, axis=0).max() < 2 or not np.isfinite(columns).all():
+            continue  # one reading each: that is its own scatter
+        cause = formula.cause
+        log = prior.share[cause.id] + float(np.log(formula.form.weight))
+        widths = SPREADS[SPREADS >= 1] if formula.paced else SPREADS  # less shows less than in proportion
+        beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
+        yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula, passing=passing)
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
