@@ -21,7 +21,7 @@ def test_the_page_is_made_from_what_was_stored() -> None:
 
 
 def test_the_cooler_is_named_and_sized() -> None:
-    """With its pair; with one thermometer the answer is a set of cooler, flow, heat and room; the gain is held out."""
+    """With its pair; with one thermometer the answer is a set of cooler, heat and room; the gain is held out."""
     cooler, alone, pair = (BY[f"cooler at 3 %{words}"] for words in ("", ", TS1 alone", ", TS3 and TS4"))
     low, high = np.exp(cooler["size"]["ci95"])
     assert low < SHARE < high
@@ -32,7 +32,7 @@ def test_the_cooler_is_named_and_sized() -> None:
         assert result["verdict"] == "explained"
         assert result["answers"][0]["probability"] > 0.9
     named = {cause for a in alone["answers"] if a["probability"] > 0.1 for cause in a["causes"]}
-    assert named == {"cooling.cooler", "cooling.oil_flow", "losses.pump_power", "sensor.ambient.bias"}
+    assert named == {"cooling.cooler", "losses.pump_power", "sensor.ambient.bias"}
 
 
 def test_the_leak_is_seen_by_the_efficiency_alone() -> None:
