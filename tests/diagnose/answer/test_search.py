@@ -1,11 +1,13 @@
-"""What the search does beside its first order: other causes in place of one of a set."""
+"""What the search does beside its first order: other causes in place of one of a set; what lasts of what is anew."""
 
 from __future__ import annotations
 
 import numpy as np
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found
+from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Acting
+from gearheat.tools.diagnose.infer.terms import spreads
 from gearheat.tools.diagnose.infer.weigh import Options, Weighing
 from gearheat.tools.diagnose.setting import Setting
 
@@ -21,3 +23,13 @@ def test_the_right_cause_takes_the_place_of_a_wrong_one_in_a_set(wrong: tuple[Se
     assert own.leader().causes == pair
     own._exchange()
     assert "sensor.oil_temp.offset" in own.leader().causes and len(own.leader().causes) == 2
+
+
+def test_what_lasts_of_errors_that_are_anew_in_each_test_is_their_mean(wrong: tuple[Setting, Found]) -> None:
+    made, found = wrong
+    formulas = [f for f in made.formulas if f.form.spread == "test" and not f.paced]
+    terms = list(spreads(found.problem, found.null.look, formulas, Prior(f.cause for f in formulas)))
+    assert "procedure.day_scatter" in {t.name for t in terms}
+    for t in terms:
+        effect, tests = t.columns.sum(axis=1, keepdims=True), found.problem.data.campaign.n_tests
+        assert t.passing is not None and np.allclose(t.columns - t.passing, effect / tests)

@@ -104,8 +104,8 @@ def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
     o, told = found.problem.data, []
     for i, s in enumerate(o.read):
         rows = np.flatnonzero(o.kind == i)
-        if s.name in own[0].channels and len(rows):
-            rms = float(np.sqrt(np.mean(((own[0].size * own[0].columns[rows]) ** 2).sum(axis=1))))
+        if s.name in own[0].of.channels and len(rows):
+            rms = float(np.sqrt(np.mean(((own[0].size * own[0].of.columns[rows]) ** 2).sum(axis=1))))
             value = channels.difference(s, rms)
             one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
             told.append((rms / s.repeat_sd, one))

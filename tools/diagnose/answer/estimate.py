@@ -130,7 +130,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
         return ()
     h, extra = own[0]
     white, e = h.fit.linear(found.problem)
-    V, r, one = white.L @ white.L.T, white.L @ e, extra.columns @ extra.columns.T
+    V, r, one = white.L @ white.L.T, white.L @ e, extra.of.columns @ extra.of.columns.T
     V = V - extra.size**2 * one
     whites = [White.of(V + size**2 * one) for size in SPREADS]
     logs = [white.log_density(white(r)) for white in whites]

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model.entries import Term
 from ..model.formula import Formula
+from . import terms
 from .fit import Fit
 from .prior import Prior
 from .problem import Aside, Problem
@@ -20,33 +21,36 @@ Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 @dataclass(frozen=True, eq=False)
 class Extra:
-    """What scatters beside the causes of a hypothesis: sizes that differ, or a remainder where `cause` is None.
+    """What scatters beside the causes of a hypothesis: a term of the list, sizes that differ or a remainder.
 
     Args:
-        cause: id
-        form: name of its form, or of the remainder
+        of: the term
         size: standard deviation, in half widths of the prior or standard deviations of a reading
-        channels: sensors in which a remainder acts
-        columns: at size one (M, k)
-        log_prior: of its form, or of the remainder beside a hypothesis
-        label: that of the term that it is
-        passing: what of the columns is another in each test or mounting (M, k)
     """
 
-    cause: str | None
-    form: str
+    of: terms.Term
     size: float
-    channels: tuple[str, ...]
-    columns: np.ndarray
-    log_prior: float
-    label: str
-    passing: np.ndarray | None
+
+    @property
+    def cause(self) -> str | None:
+        """Id; None: a remainder."""
+        return self.of.name if self.of.formula else None
+
+    @property
+    def form(self) -> str:
+        """Name of the cause's form, or of the remainder."""
+        return self.of.formula.form.name if self.of.formula else self.of.name
+
+    @property
+    def log_prior(self) -> float:
+        """Of the cause's form, or of the remainder beside a hypothesis."""
+        return float(np.log(self.of.formula.form.weight)) if self.of.formula else self.of.log_prior
 
     @property
     def term(self) -> Term:
         """Its covariance."""
-        passing = None if self.passing is None else self.size * self.passing
-        return Term(self.form, self.size * self.columns, passing=passing)
+        passing = None if self.of.passing is None else self.size * self.of.passing
+        return Term(self.form, self.size * self.of.columns, passing=passing)
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,8 @@ class Noise:
     def passing(self) -> np.ndarray:
         """What of the rows is another in each test or mounting, with the columns as they are (M, M)."""
         own = zip(self.terms, np.exp(2 * self._all_scales), strict=True)
-        return np.asarray(sum(v * t.passing @ t.effects.T for t, v in own if t.passing is not None))
+        parts = (v * t.passing @ t.effects.T for t, v in own if t.passing is not None)
+        return sum(parts, np.zeros((self.terms[0].m,) * 2))
 
     @property
     def _all_scales(self) -> np.ndarray:

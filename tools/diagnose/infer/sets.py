@@ -110,9 +110,11 @@ class Linear:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         columns = [self.terms[k].columns for k in own.members]
         G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
-        noise, passing = self.at(own.scatter.scales), self.at(own.scatter.scales).passing
-        for t, width in ((self.terms[k], width) for k, width in own.scatter.beside):
-            passing = passing if t.passing is None else passing + width**2 * t.passing @ t.columns.T
+        noise = self.at(own.scatter.scales)
+        passing = noise.passing
+        for k, width in own.scatter.beside:
+            if (part := self.terms[k].passing) is not None:
+                passing = passing + width**2 * part @ self.terms[k].columns.T
         whole = noise.covariance + self.known + self.scattered(own.scatter) + G @ G.T
         return split_error(whole, passing, self.residual, kept, held)
 
@@ -291,10 +293,10 @@ class Whitened:
         """
         sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]
-        left = [[k for k, group in enumerate(groups) if group != gone] for gone in dict.fromkeys(["", *groups])]
+        left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
             near = self if beside == sides else Whitened(table, Scatter(scales, beside))
-            for kept in dict.fromkeys(map(tuple, [*left, []])):
+            for kept in dict.fromkeys([*left, ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
                 yield from near._further(base)
@@ -305,8 +307,8 @@ class Whitened:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
     @cached_property
-    def columns(self) -> list[np.ndarray]:
-        """Whitened columns of all scatters."""
+    def scattering(self) -> list[np.ndarray]:
+        """Columns of all scatters, whitened."""
         return np.split(self.white(self.table.scatters), self.table.parts, axis=1)
 
     def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
@@ -314,10 +316,9 @@ class Whitened:
         terms, kept = self.table.linear.terms, [*own.members, *(k for k, _ in self.scatter.beside)]
         turned, b, _ = self.beside(own.members, own.widths)
         logs = self.table.log_priors(kept) - self.table.log_prior(kept)
-        for k in range(self.table.n, len(terms)):
+        for k, C in zip(range(self.table.n, len(terms)), self.scattering, strict=False):
             if not np.isfinite(logs[k]):
                 continue
-            C = self.columns[k - self.table.n]
             tie = turned.T @ C
             q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
             s = turn.T @ (C.T @ self.e - b @ tie)

@@ -110,12 +110,12 @@ def remainders(problem: Problem) -> Iterator[Term]:
     kernels = [("smooth in the conditions", problem.alike, groups)]
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
         kernels.append((BY_TEST, tests[:, None] == tests, [g for g in groups if len(g) > 1]))
-    log = float(np.log(OUTSIDE) - np.log(sum(len(groups) for _, _, groups in kernels)))
-    for name, kernel, groups in kernels:
+    log = float(np.log(OUTSIDE) - np.log(sum(len(places) for _, _, places in kernels)))
+    for name, kernel, places in kernels:
         variance, vectors = np.linalg.eigh(kernel * problem.same)
         kept = variance > FAINT * variance[-1]
         root = vectors[:, kept] * np.sqrt(variance[kept])
-        for group in groups:
+        for group in places:
             mine = np.isin(o.entries.sensor, group)
             own = (mine * o.entries.repeat)[:, None] * root
             columns = np.zeros((problem.m, root.shape[1]))

@@ -206,7 +206,7 @@ class Weighing:
         self.linear = sets.Linear(terms, residual, known, noise, self.prior, self.critical, self.options.most)
         starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):
-            sizes = {e.label: e.size for e in extras}
+            sizes = {e.of.label: e.size for e in extras}
             beside = tuple((k, sizes[t.label]) for k, t in enumerate(terms) if t.scatters and t.label in sizes)
             starts = [sets.Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
@@ -328,7 +328,7 @@ class Weighing:
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
-        extras = tuple(_extra(t, w) for t, w in scatters)
+        extras = tuple(Extra(t, w) for t, w in scatters)
         problem = self.whole.without(own.key[2]).beside(tuple(e.term for e in extras))
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         self._keep(own.key, fit, extras, forms)
@@ -368,14 +368,6 @@ class Weighing:
 def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
     """The gross readings of a set."""
     return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
-
-
-def _extra(t: Term, width: float) -> Extra:
-    """A term that scatters, of a width."""
-    if t.formula is None:
-        return Extra(None, t.name, width, t.channels, t.columns, t.log_prior, t.label, t.passing)
-    form = t.formula.form
-    return Extra(t.name, form.name, width, (), t.columns, float(np.log(form.weight)), t.label, t.passing)
 
 
 def _term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:
