@@ -35,6 +35,8 @@ WITHIN = 8.0
 ALONE = (4, 10)
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
+#: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
+NEAR = 10.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
@@ -151,6 +153,7 @@ class Weighing:
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
                 self._exchange()
+            self._fit_alike()
             if k > 1 and self.leader().fit is best:
                 break
         return self._weighed()
@@ -266,6 +269,18 @@ class Weighing:
             if key not in self.exchanged:
                 self.exchanged.add(key)
                 self._join_all(key, fewer, fewer.fit.look.acting, set())
+
+    def _fit_alike(self) -> None:
+        """Fits what is near the leading set with its gross readings, so that both are weighed by the same readings."""
+        ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
+        aside, best = ranked[0][0][2], ranked[0][1].log_joint
+        for key, h in ranked:
+            own = (*key[:2], aside)
+            if h.log_joint > best - NEAR and own not in self.hypotheses:
+                problem = self.whole.without(aside).beside(tuple(e.term for e in h.extras))
+                with suppress(SolveError):
+                    fit = fitted(problem, h.fit.look.acting, h.fit.look.z, h.fit.noise.scales)
+                    self._keep(own, fit, h.extras, h.forms)
 
     def _join_all(self, key: Key, known: Hypothesis, rest: Sequence[Acting], gone: Set[str]) -> None:
         """Fits what promises most beside some causes of a hypothesis, without those that are gone."""
