@@ -33,6 +33,8 @@ WITHIN = 8.0
 #: Causes fitted alone where the rig is calibrated, and where the file has it: a large effect bends, and its cause may
 #: explain more than it promises to first order.
 ALONE = (4, 10)
+#: Share of what the best form of such a cause promises from which others of its forms are fitted, too.
+SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
 #: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
@@ -216,7 +218,7 @@ class Weighing:
 
     def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        for start, logs in self._promising(look, set(), n, self.options.wanted):
+        for start, logs in self._promising(look, set(), n, self.options.wanted, SHARE if near is self.null else 1.0):
             beside = (frozenset[str](), self.problem.aside)
             self._fit_joined(near, self.problem, start, beside, {start.acting.id: logs})
 
@@ -237,7 +239,7 @@ class Weighing:
             self._keep((frozenset(a.formula for a in acting), *beside), fit, extras, forms)
 
     def _promising(
-        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
+        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
@@ -251,7 +253,9 @@ class Weighing:
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
-            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
+            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
+            for i in [k, *(i for i in own if i != k and value[i] > share * value[k] > 0)]:
+                yield look.start(i), logs
 
     def _exchange(self) -> None:
         """Fits what promises most in place of each cause of the leading set, and beside the best sets of fewer causes.
