@@ -164,7 +164,7 @@ def diagnose(
     predict: File | None = None,
     causes: int = MOST,
     quick: bool = False,
-    alpha: float = 0.05,
+    alpha: float = 0.03,
     seed: int = 0,
     series: File | None = None,
     reference_series: File | None = None,

@@ -48,7 +48,7 @@ class Request:
     predict: Path | None = None
     causes: int = MOST
     quick: bool = False
-    alpha: float = 0.05
+    alpha: float = 0.03
     seed: int = 0
     series: Path | None = None
     reference_series: Path | None = None
@@ -67,7 +67,7 @@ class Request:
         checks = {
             "no data are given. Name a table of readings, or logs with --logs FILE.": self.data is None
             and not self.logs,
-            f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.05.": not (
+            f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.03.": not (
                 0.0 < self.alpha < 1.0
             ),
             f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}.": not 1

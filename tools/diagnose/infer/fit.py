@@ -50,6 +50,7 @@ class Fit:
         cost: half the squared misfit, priors included
         evidence: log of the marginal likelihood, without the prior of the hypothesis
         form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
+        effects: of its causes on the data (m, k)
         short: log likelihood that the slopes promise beyond the point, where the fit has stalled; the evidence lacks it
     """
 
@@ -58,6 +59,7 @@ class Fit:
     cost: float
     evidence: float
     form: float
+    effects: np.ndarray
     short: float = 0.0
 
     @property
@@ -80,7 +82,7 @@ class Fit:
         """Covariance (M, M) of the readings' scatter and of what the forms leave of the causes' effects."""
         V = self.noise.covariance
         if self.form:
-            V = V + self.form**2 * _rough(problem, self.look, _Vector(problem, self.look.acting))
+            V = V + self.form**2 * _rough(problem, self.effects)
         return V
 
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
@@ -99,13 +101,23 @@ def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
     return _Vector(problem, acting).precision
 
 
-def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
-    """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M).
+def _effects(problem: Problem, look: Look) -> np.ndarray:
+    """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""
+    sizes = _Vector(problem, look.acting).sizes
+    found = (look.jacobian[:, sizes] * look.x[sizes])[problem.own]
+    for k, a in enumerate(look.acting):
+        without = problem.shown(look.z, [b for b in look.acting if b is not a])[problem.own]
+        if np.isfinite(without).all():
+            found[:, k] = look.shown[problem.own] - without
+    return np.asarray(found)
+
+
+def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
+    """Covariance of what forms leave of the effects of their causes (m, k), as a smooth share of them (M, M).
 
     A form may bring a body more of its heat than it gets: that share differs from channel to channel.
     """
     alike = problem.alike * (TOGETHER + (1 - TOGETHER) * problem.same)
-    effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
     rough = np.zeros((problem.m, problem.m))
     rough[problem.own, problem.own] = (effects @ effects.T) * alike
     return rough
@@ -266,15 +278,18 @@ class _Line:
         V, look, residual = noise.covariance + self.known, self.look, self.residual
         if not look.acting:
             white = White.of(V)
-            return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
-        rough = _rough(self.problem, look, self.vector)
+            evidence = white.log_density(white(residual)) + noise.log_prior
+            return Fit(look, noise, cost, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
+        effects = _effects(self.problem, look)
+        rough = _rough(self.problem, effects)
         logs = []
         for share, weight in FORM.items():
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
         form, short = list(FORM)[int(np.argmax(logs))], self._short(noise)
-        return Fit(look, noise, cost, float(np.logaddexp.reduce(logs)) + noise.log_prior - short, form, short)
+        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
+        return Fit(look, noise, cost, evidence, form, effects, short)
 
     def _short(self, noise: Noise) -> float:
         """What the slopes promise of log likelihood beyond here, 0 where that is little; sizes stay at their bounds."""
