@@ -1,4 +1,4 @@
-"""What the slopes of a stalled fit promise beyond the point where it stands counts for nothing."""
+"""Fits whose effect bends: what the slopes promise beyond a stalled point counts for nothing, nor for what it does."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ NOISE: Any = SimpleNamespace(covariance=np.eye(5), log_prior=0.0)
 class Turning:
     """Readings that fall again behind a size, and never get as far as they are measured."""
 
-    nz, m, own = 1, 5, slice(0, 5)
+    nz, m, own, data = 1, 5, slice(0, 5), SimpleNamespace(m=5)
     alike, same = np.ones((5, 5)), np.eye(5)
     measured = 4.0 * BY_T
 
     def shown(self, z: np.ndarray, acting: tuple[Acting, ...]) -> np.ndarray:
-        t = acting[0].t[0]
+        t = acting[0].t[0] if acting else 0.0
         return np.asarray(BY_Z * z[0] + BY_T * t * np.exp(-0.5 * (t / TURNS) ** 2))
 
     def cost(self, x: np.ndarray) -> float:
@@ -54,3 +54,12 @@ def test_evidence_lacks_what_the_slopes_promise(monkeypatch: pytest.MonkeyPatch)
     assert found.short == pytest.approx(problem.cost(x) - least) and found.short > 3
     monkeypatch.setattr(fit, "STALLED", np.inf)
     assert stalled(problem).evidence - found.evidence == pytest.approx(found.short)
+
+
+def test_what_a_cause_does_is_no_slope_times_its_size() -> None:
+    problem: Any = Turning()
+    found = stalled(problem)
+    alone = problem.shown(found.look.z, found.look.acting) - problem.shown(found.look.z, ())
+    assert found.effects == pytest.approx(alone[:, None])
+    slope = found.look.jacobian[:, 1] * found.look.x[1]
+    assert np.linalg.norm(slope) < 0.5 * np.linalg.norm(alone)
