@@ -39,7 +39,7 @@ SHARE = 0.8
 EXCHANGED = 4
 #: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
 NEAR = 10.0
-#: p of any cause above which little is fitted.
+#: p of any cause above which nothing more is fitted, where none leads: it does not know what scatters.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
 QUICK = 3
@@ -143,8 +143,9 @@ class Weighing:
     def run(self) -> Found:
         """Everything."""
         self.keep_null()
-        looks = LOOKS if self.p_any < QUIET else 1
-        for k in range(looks):
+        for k in range(LOOKS):
+            if k and self.p_any > QUIET and not self.leader().causes:
+                break
             best = self.leader().fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
@@ -264,15 +265,18 @@ class Weighing:
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         leader, best = ranked[0]
-        acting = best.fit.look.acting
-        for a in acting if len(acting) > 1 and leader not in self.exchanged else ():
-            self._join_all(leader, best, [b for b in acting if b is not a], {a.id})
+        acting, extras = best.fit.look.acting, best.extras
+        if leader not in self.exchanged and len(best.causes) > 1:
+            for a in acting:
+                self._join_all(leader, best, [b for b in acting if b is not a], extras, {a.id})
+            for e in extras:
+                self._join_all(leader, best, acting, tuple(other for other in extras if other is not e), {e.cause or ""})
         self.exchanged.add(leader)
         for n in range(1, len(acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
             if key not in self.exchanged:
                 self.exchanged.add(key)
-                self._join_all(key, fewer, fewer.fit.look.acting, set())
+                self._join_all(key, fewer, fewer.fit.look.acting, fewer.extras, set())
 
     def _fit_alike(self) -> None:
         """Fits what is near the leading set with its gross readings, so that both are weighed by the same readings."""
@@ -286,17 +290,19 @@ class Weighing:
                     fit = fitted(problem, h.fit.look.acting, h.fit.look.z, h.fit.noise.scales)
                     self._keep(own, fit, h.extras, h.forms)
 
-    def _join_all(self, key: Key, known: Hypothesis, rest: Sequence[Acting], gone: Set[str]) -> None:
-        """Fits what promises most beside some causes of a hypothesis, without those that are gone."""
-        fit, noise = known.fit, tuple(e.term for e in known.extras)
-        problem = self.whole.without(key[2]).beside(noise)
+    def _join_all(
+        self, key: Key, known: Hypothesis, rest: Sequence[Acting], extras: tuple[Extra, ...], gone: Set[str]
+    ) -> None:
+        """Fits what promises most beside the rest of a hypothesis, without what is gone."""
+        fit, beside = known.fit, (frozenset(e.of.label for e in extras), key[2])
+        problem = self.whole.without(key[2]).beside(tuple(e.term for e in extras))
         with suppress(SolveError):
             near = fitted(problem, rest, fit.look.z, fit.noise.scales) if gone else fit
             look = self.screened(near, problem)
             taken = {*gone, *(b.formula.cause.family for b in rest)}
             for start, logs in self._promising(look, taken, EXCHANGED):
                 forms = {c: each for c, each in known.forms.items() if c not in gone} | {start.acting.id: logs}
-                self._fit_joined(near, problem, start, key[1:], forms, known.extras)
+                self._fit_joined(near, problem, start, beside, forms, extras)
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
