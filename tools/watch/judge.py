@@ -12,12 +12,12 @@ import numpy as np
 from ...scenarios.measured.logs import NUMBERS, Log, log_of
 from ..diagnose.answer import channels
 from ..diagnose.answer.findings import Cause
-from ..diagnose.infer.expect import expect
 from ..diagnose.infer.logs import Fleet, fleet, question
 from ..diagnose.logs import Logs, check, formulas_of, judged
 from ..diagnose.model.formula import Formula
 from ..diagnose.report.phrases import name_of
 from ..diagnose.request import Inputs
+from .expect import expect
 from .store import Cells
 
 #: Half of a band of 95 % [standard deviations].

@@ -11,10 +11,10 @@ from gearheat.scenarios.measured.logs import Log
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.diagnose.answer.findings import Findings
 from gearheat.tools.diagnose.answer.numbers import as_object
-from gearheat.tools.diagnose.infer.expect import expect
 from gearheat.tools.diagnose.infer.logs import Fleet, filter_of, fleet, question
 from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed, formulas_of
 from gearheat.tools.diagnose.request import Inputs, Request
+from gearheat.tools.watch.expect import expect
 from gearheat.tools.watch.judge import BAND, Judge
 from made_logs import MACHINES, YEARS, differing, made
 

@@ -17,6 +17,8 @@ from .screen import Screen
 
 #: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
 Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
+#: Log weight of each form of each cause, by id and name.
+Forms = Mapping[str, Mapping[str, float]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +71,7 @@ class Hypothesis:
     fit: Fit
     log_joint: float
     extras: tuple[Extra, ...] = ()
-    forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    forms: Forms = field(default_factory=dict)
 
     def form(self, cause: str) -> str:
         """Name of the form of a cause."""

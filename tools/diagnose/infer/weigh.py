@@ -6,7 +6,7 @@ at the best of them until the best one stays. All fits are weighed alike, nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -18,7 +18,7 @@ from ..model.formula import Formula
 from . import sets
 from .evidence import WIDTHS, White
 from .fit import Fit, fitted
-from .found import Extra, Found, Hypothesis, Key, with_forms
+from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
 from .screen import Screen, Start, null_draws, screened
@@ -219,25 +219,14 @@ class Weighing:
 
     def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        for start, logs in self._promising(look, set(), n, self.options.wanted, SHARE if near is self.null else 1.0):
-            beside = (frozenset[str](), self.problem.aside)
-            self._fit_joined(near, self.problem, start, beside, {start.acting.id: logs})
+        share = SHARE if near is self.null else 1.0
+        for start, logs in self._promising(look, set(), n, self.options.wanted, share):
+            self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
 
-    def _fit_joined(
-        self,
-        near: Fit,
-        problem: Problem,
-        start: Start,
-        beside: tuple[frozenset[str], frozenset[Aside]],
-        forms: Mapping[str, Mapping[str, float]],
-        extras: tuple[Extra, ...] = (),
-    ) -> None:
-        """Fits a cause joined to what acts in a fit, beside terms that scatter and readings that are gross."""
+    def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
+        """Fits a cause joined to what acts in a fit, beside what scatters."""
         z, kept = near.moved(problem, start.effect)
-        acting = [*kept, start.acting]
-        with suppress(SolveError):
-            fit = fitted(problem, acting, z, near.noise.scales)
-            self._keep((frozenset(a.formula for a in acting), *beside), fit, extras, forms)
+        self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
 
     def _promising(
         self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
@@ -265,44 +254,41 @@ class Weighing:
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         leader, best = ranked[0]
-        acting, extras = best.fit.look.acting, best.extras
+        acting = best.fit.look.acting
         if leader not in self.exchanged and len(best.causes) > 1:
-            for a in acting:
-                self._join_all(leader, best, [b for b in acting if b is not a], extras, {a.id})
-            for e in extras:
-                self._join_all(leader, best, acting, tuple(other for other in extras if other is not e), {e.cause or ""})
+            gone: tuple[Acting | Extra, ...] = (*acting, *best.extras)
+            for one in gone:
+                self._join_all(leader, best, one)
         self.exchanged.add(leader)
         for n in range(1, len(acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
             if key not in self.exchanged:
                 self.exchanged.add(key)
-                self._join_all(key, fewer, fewer.fit.look.acting, fewer.extras, set())
+                self._join_all(key, fewer)
+
+    def _join_all(self, key: Key, known: Hypothesis, gone: Acting | Extra | None = None) -> None:
+        """Fits what promises most beside a hypothesis, or beside what is left of it."""
+        fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
+        rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
+        with suppress(SolveError):
+            near = fitted(problem, rest, fit.look.z, fit.noise.scales) if gone else fit
+            taken = {*known.causes, *(b.formula.cause.family for b in rest)}
+            for start, logs in self._promising(self.screened(near, problem), taken, EXCHANGED):
+                forms = {b.id: known.forms.get(b.id, {}) for b in rest} | {start.acting.id: logs}
+                self._fit_joined(near, problem, start, extras, forms)
 
     def _fit_alike(self) -> None:
         """Fits what is near the leading set with its gross readings, so that both are weighed by the same readings."""
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         aside, best = ranked[0][0][2], ranked[0][1].log_joint
         for key, h in ranked:
-            own = (*key[:2], aside)
-            if h.log_joint > best - NEAR and own not in self.hypotheses:
-                problem = self.whole.without(aside).beside(tuple(e.term for e in h.extras))
-                with suppress(SolveError):
-                    fit = fitted(problem, h.fit.look.acting, h.fit.look.z, h.fit.noise.scales)
-                    self._keep(own, fit, h.extras, h.forms)
+            if h.log_joint > best - NEAR and (*key[:2], aside) not in self.hypotheses:
+                look, problem = h.fit.look, self._beside(aside, h.extras)
+                self._fit_exactly(problem, look.acting, look.z, h.fit.noise.scales, h.extras, h.forms)
 
-    def _join_all(
-        self, key: Key, known: Hypothesis, rest: Sequence[Acting], extras: tuple[Extra, ...], gone: Set[str]
-    ) -> None:
-        """Fits what promises most beside the rest of a hypothesis, without what is gone."""
-        fit, beside = known.fit, (frozenset(e.of.label for e in extras), key[2])
-        problem = self.whole.without(key[2]).beside(tuple(e.term for e in extras))
-        with suppress(SolveError):
-            near = fitted(problem, rest, fit.look.z, fit.noise.scales) if gone else fit
-            look = self.screened(near, problem)
-            taken = {*gone, *(b.formula.cause.family for b in rest)}
-            for start, logs in self._promising(look, taken, EXCHANGED):
-                forms = {c: each for c, each in known.forms.items() if c not in gone} | {start.acting.id: logs}
-                self._fit_joined(near, problem, start, beside, forms, extras)
+    def _beside(self, aside: frozenset[Aside], extras: Sequence[Extra]) -> Problem:
+        """The problem with some gross readings and scatters."""
+        return self.whole.without(aside).beside(tuple(e.term for e in extras))
 
     def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
@@ -313,8 +299,7 @@ class Weighing:
                 break
             if own.key in self.hypotheses:
                 continue
-            with suppress(SolveError):
-                self._fit(own, near, self._forms(own, combinations))
+            self._fit(own, near, self._forms(own, combinations))
 
     def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
         """Sets put together by their forms and scatters, the likeliest first."""
@@ -341,7 +326,7 @@ class Weighing:
                     logs[f.cause.id][f.form.name] = float(np.logaddexp(known, other.log))
         return logs
 
-    def _fit(self, own: _Combination, near: Fit, forms: dict[str, dict[str, float]]) -> None:
+    def _fit(self, own: _Combination, near: Fit, forms: Forms) -> None:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
         V = self.linear.at(s.scatter.scales).covariance + self.linear.known
@@ -354,11 +339,23 @@ class Weighing:
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
         extras = tuple(Extra(t, w) for t, w in scatters)
-        problem = self.whole.without(own.key[2]).beside(tuple(e.term for e in extras))
-        fit = fitted(problem, acting, z, np.array(s.scatter.scales))
-        self._keep(own.key, fit, extras, forms)
+        self._fit_exactly(self._beside(own.key[2], extras), acting, z, np.array(s.scatter.scales), extras, forms)
 
-    def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Mapping[str, Mapping[str, float]]) -> None:
+    def _fit_exactly(
+        self,
+        problem: Problem,
+        acting: Sequence[Acting],
+        z: np.ndarray,
+        scales: np.ndarray,
+        extras: tuple[Extra, ...],
+        forms: Forms,
+    ) -> None:
+        """Fits causes beside scatters from where they begin, if the model can be run there."""
+        with suppress(SolveError):
+            key = frozenset(a.formula for a in acting), frozenset(e.of.label for e in extras), problem.aside
+            self._keep(key, fitted(problem, acting, z, scales), extras, forms)
+
+    def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Forms) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = tuple(dict.fromkeys([*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause)]))

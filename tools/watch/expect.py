@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.windows import Windows
-from .logs import Fleet
+from ..diagnose.infer.logs import Fleet
+from ..diagnose.model.windows import Windows
 
 
 @dataclass(frozen=True, eq=False)
