@@ -1,4 +1,4 @@
-"""Fits whose effect bends: what the slopes promise beyond a stalled point counts for nothing, nor for what it does."""
+"""Effects that bend: what slopes promise beyond a stalled fit counts for nothing, and they are not the effect."""
 
 from __future__ import annotations
 

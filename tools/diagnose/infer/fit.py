@@ -101,17 +101,6 @@ def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
     return _Vector(problem, acting).precision
 
 
-def _effects(problem: Problem, look: Look) -> np.ndarray:
-    """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""
-    sizes = _Vector(problem, look.acting).sizes
-    found = (look.jacobian[:, sizes] * look.x[sizes])[problem.own]
-    for k, a in enumerate(look.acting):
-        without = problem.shown(look.z, [b for b in look.acting if b is not a])[problem.own]
-        if np.isfinite(without).all():
-            found[:, k] = look.shown[problem.own] - without
-    return np.asarray(found)
-
-
 def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
     """Covariance of what forms leave of the effects of their causes (m, k), as a smooth share of them (M, M).
 
@@ -280,7 +269,7 @@ class _Line:
             white = White.of(V)
             evidence = white.log_density(white(residual)) + noise.log_prior
             return Fit(look, noise, cost, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
-        effects = _effects(self.problem, look)
+        effects = self._effects()
         rough = _rough(self.problem, effects)
         logs = []
         for share, weight in FORM.items():
@@ -290,6 +279,16 @@ class _Line:
         form, short = list(FORM)[int(np.argmax(logs))], self._short(noise)
         evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
         return Fit(look, noise, cost, evidence, form, effects, short)
+
+    def _effects(self) -> np.ndarray:
+        """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""
+        look, own = self.look, self.problem.own
+        found = (self.G * look.x[self.vector.sizes])[own]
+        for k, a in enumerate(look.acting):
+            without = self.problem.shown(look.z, [b for b in look.acting if b is not a])[own]
+            if np.isfinite(without).all():
+                found[:, k] = look.shown[own] - without
+        return np.asarray(found)
 
     def _short(self, noise: Noise) -> float:
         """What the slopes promise of log likelihood beyond here, 0 where that is little; sizes stay at their bounds."""

@@ -233,7 +233,7 @@ class Weighing:
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
-        Causes that are taken, by name or family, are left out.
+        Causes that are taken, by name or family, are left out. Of each also the forms that promise a share of its best.
         """
         log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
@@ -244,8 +244,9 @@ class Weighing:
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
             logs = {self.formulas[i].form.name: float(value[i]) for i in own}
-            for i in [k, *(i for i in own if i != k and value[i] > share * value[k] > 0)]:
-                yield look.start(i), logs
+            for i in own:
+                if i == k or value[i] > share * value[k] > 0:
+                    yield look.start(i), logs
 
     def _exchange(self) -> None:
         """Fits what promises most in place of each cause of the leading set, and beside the best sets of fewer causes.
@@ -297,9 +298,8 @@ class Weighing:
             self.progress("causes fitted together", share + 0.1 * done / most)
             if own.log < combinations[0].log - WITHIN:
                 break
-            if own.key in self.hypotheses:
-                continue
-            self._fit(own, near, self._forms(own, combinations))
+            if own.key not in self.hypotheses:
+                self._fit(own, near, self._forms(own, combinations))
 
     def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
         """Sets put together by their forms and scatters, the likeliest first."""
