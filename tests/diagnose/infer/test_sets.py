@@ -1,4 +1,7 @@
-"""Sets of terms are weighed as the integrals say, and several things at once are found."""
+"""Sets of terms are weighed as the integrals say, several things at once are found, a sampler finds the same.
+
+With `GEARHEAT_HIDDEN=all` the measured planetary campaign is searched and sampled, too, with three seeds each.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import ALL
+from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.diagnose.infer import sets
 from gearheat.tools.diagnose.infer.evidence import WIDTHS
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Aside, Noise
 from gearheat.tools.diagnose.infer.terms import ERRORS, SPREADS, Term
+from gearheat.tools.diagnose.infer.weigh import Options, Weighing
 from gearheat.tools.diagnose.model.entries import Term as Scatter
+from gearheat.tools.diagnose.request import Request, read
+from gearheat.tools.diagnose.setting import setting
+from sampled_sets import likely, shares
 from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 
@@ -149,3 +158,31 @@ def test_a_cause_that_has_a_size_and_is_drawn_anew_counts_once() -> None:
     assert other < both - 3
     assert table.log_priors([CAUSES])[[3, 4]] == pytest.approx([both, other])
     assert table.log_priors([3])[CAUSES] == pytest.approx(both)
+
+
+def test_what_acts_is_as_likely_as_a_sampler_says() -> None:
+    effects = effects_of(np.random.default_rng(1))
+    problem = linear(noise(9) + 2.0 * effects[:, 3] + 0.6 * effects[:, 6], [])
+    found = likely(problem, sets.search(problem, [sets.Scatter((0.0,))], lambda share: None))
+    drawn = shares(problem, 1, 300)
+    for name in found.keys() | drawn.keys():
+        assert drawn.get(name, 0.0) == pytest.approx(found.get(name, 0.0), abs=0.12), (name, found, drawn)
+
+
+@pytest.mark.skipif(not ALL, reason="three searches of a measured campaign and three chains take minutes")
+def test_search_and_sampler_name_the_same_in_the_measured_campaign() -> None:
+    folder = RIGS / "planetary"
+    inputs = read(Request("planetary", data=folder / "measured.csv", card=folder / "card.json"), {}, [])
+    whole = setting(inputs.scenario, inputs.card, inputs.data, None, (), [])
+    named = set()
+    for seed in range(3):
+        own = Weighing(whole.problem, whole.formulas, Options(seed=seed))
+        own.ask_alarm()
+        own.run()
+        near = own.leader().fit
+        found = likely(own.linear, own.search(near, own.screened(near, own.problem), "", 0.0))
+        drawn = shares(own.linear, seed, 60)
+        print(seed, {k: (round(found.get(k, 0.0), 2), round(drawn.get(k, 0.0), 2)) for k in found if found[k] > 0.3})
+        named |= {frozenset(k for k, share in by.items() if share > 0.5) for by in (found, drawn)}
+    assert len(named) == 1, named
+    assert set(own.leader().causes) <= next(iter(named))

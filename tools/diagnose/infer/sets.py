@@ -8,7 +8,7 @@ of sizes grow, shrink and exchange members, and the likeliest set says which sca
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -64,6 +64,11 @@ class TermSet:
     log: float
 
     @property
+    def sized(self) -> tuple[tuple[int, float], ...]:
+        """Members and their widths."""
+        return tuple(zip(self.members, self.widths, strict=True))
+
+    @property
     def terms(self) -> tuple[int, ...]:
         """Numbers of all terms, scatters too."""
         return tuple(sorted((*self.members, *(k for k, _ in self.scatter.beside))))
@@ -102,14 +107,17 @@ class Linear:
 
     def scattered(self, scatter: Scatter) -> np.ndarray:
         """Covariance of what scatters beside the loose terms (M, M)."""
-        columns = [width * self.terms[k].columns for k, width in scatter.beside]
-        whole = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1)
-        return np.asarray(whole @ whole.T)
+        columns = self.sized(scatter.beside)
+        return np.asarray(columns @ columns.T)
+
+    def sized(self, widths: Iterable[tuple[int, float]]) -> np.ndarray:
+        """Columns of terms times their widths (M, k)."""
+        own = (width * self.terms[k].columns for k, width in widths)
+        return np.concatenate([np.zeros((len(self.residual), 0)), *own], axis=1)
 
     def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
-        columns = [self.terms[k].columns for k in own.members]
-        G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
+        G = self.sized(own.sized)
         noise = self.at(own.scatter.scales)
         passing = noise.passing
         for k, width in own.scatter.beside:
@@ -126,9 +134,14 @@ class Table:
         self.linear, self.n = linear, linear.n
         own = linear.terms[: self.n]
         self.columns = np.concatenate([t.columns for t in own], axis=1)
-        #: Columns of all scatters, and where those of the next one begin.
-        self.scatters = np.concatenate([self.columns[:, :0], *(t.columns for t in linear.terms[self.n :])], axis=1)
-        self.parts = np.cumsum([t.columns.shape[1] for t in linear.terms[self.n : -1]])
+        alike: dict[tuple[int, tuple[float, ...]], list[int]] = {}
+        for k, t in enumerate(linear.terms[self.n :], self.n):
+            alike.setdefault((t.columns.shape[1], tuple(t.widths)), []).append(k)
+        #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
+        self.scatters = [
+            (own, np.array(widths), np.concatenate([linear.terms[k].columns for k in own], axis=1))
+            for (_, widths), own in alike.items()
+        ]
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
         self.families = np.array([t.family for t in linear.terms])
@@ -190,9 +203,9 @@ class Whitened:
         W = self.white(self.table.columns)
         return W, (W**2).sum(axis=0), W.T @ self.e
 
-    def beside(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
-        """Beside a set: what ties other columns to it (M, j), what it explains (j,), log density over none."""
-        U = self.white(self.table.columns[:, list(members)]) * np.array(widths)
+    def beside(self, widths: Iterable[tuple[int, float]]) -> tuple[np.ndarray, np.ndarray, float]:
+        """Beside terms of some widths: what ties other columns to them (M, j), what they explain (j,), log density."""
+        U = self.white(self.table.linear.sized(widths))
         root = np.linalg.cholesky(U.T @ U + np.eye(U.shape[1]))
         turned = np.linalg.solve(root, U.T).T
         b = turned.T @ self.e
@@ -235,7 +248,7 @@ class Whitened:
                 own[i] = tried[best]
                 mean = np.logaddexp.reduce(logs) - np.log(len(logs))
                 more[i] = float(mean - logs[best]) + np.log(max(inside[best], 1e-300))
-        _, _, log = self.beside(members, own.tolist())
+        _, _, log = self.beside(zip(members, own.tolist(), strict=True))
         beside = [k for k, _ in self.scatter.beside]
         whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])
         return TermSet(tuple(members), tuple(own.tolist()), self.scatter, whole)
@@ -273,7 +286,7 @@ class Whitened:
 
     def _offers(self, members: tuple[int, ...], widths: tuple[float, ...], best: float) -> Iterator[_Offer]:
         """A set, and it with each of the likeliest further members, near enough to the best known log joint density."""
-        turned, b, log = self.beside(members, widths)
+        turned, b, log = self.beside(zip(members, widths, strict=True))
         whole, kept = self.log + log, [*members, *(k for k, _ in self.scatter.beside)]
         yield -(whole + self.table.log_prior(kept)), members, widths
         prior = self.table.log_priors(kept)[: self.table.n]
@@ -294,40 +307,47 @@ class Whitened:
         sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
+        plain = Whitened(table, Scatter(scales)) if sides else self
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
             near = self if beside == sides else Whitened(table, Scatter(scales, beside))
             for kept in dict.fromkeys([*left, ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
-                yield from near._further(base)
-        columns, linear = self.table.columns[:, list(own.members)] * np.array(own.widths), self.table.linear
-        tied = columns @ columns.T + linear.scattered(self.scatter)
+                yield from plain._further(base)
+        linear = self.table.linear
+        columns = linear.sized((*own.sized, *sides))
+        tied = columns @ columns.T
         found = linear.at(scales).fitted(linear.residual, linear.known + tied).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
     @cached_property
-    def scattering(self) -> list[np.ndarray]:
-        """Columns of all scatters, whitened."""
-        return np.split(self.white(self.table.scatters), self.table.parts, axis=1)
+    def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Columns of scatters that the table has together, whitened (k, M, c), and their products (k, c, c)."""
+        whole = [(self.white(C), len(own)) for own, _, C in self.table.scatters]
+        found = [np.ascontiguousarray(C.reshape(len(C), k, -1).swapaxes(0, 1)) for C, k in whole]
+        return [(C, C.swapaxes(1, 2) @ C) for C in found]
 
     def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
-        """One more scatter beside a set, at its likeliest width: log joint density, scatter, the set."""
-        terms, kept = self.table.linear.terms, [*own.members, *(k for k, _ in self.scatter.beside)]
-        turned, b, _ = self.beside(own.members, own.widths)
-        logs = self.table.log_priors(kept) - self.table.log_prior(kept)
-        for k, C in zip(range(self.table.n, len(terms)), self.scattering, strict=False):
-            if not np.isfinite(logs[k]):
-                continue
-            tie = turned.T @ C
-            q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
-            s = turn.T @ (C.T @ self.e - b @ tie)
-            v = terms[k].widths[:, None] ** 2
-            q = np.maximum(q, 0.0)
-            found = (0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)).sum(axis=1)
-            best = int(np.argmax(found))
-            beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
-            yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside), own
+        """One more scatter beside those of a set, at its likeliest width: log joint density, scatter, the set.
+
+        All that the set has is beside this scatter, so that columns are whitened once for sets of any scatter.
+        """
+        kept, sides = [*own.members, *(k for k, _ in own.scatter.beside)], own.scatter.beside
+        turned, b, _ = self.beside((*own.sized, *sides))
+        logs, left = self.table.log_priors(kept) - self.table.log_prior(kept), self.e @ self.e - b @ b
+        for (numbers, widths, _), (C, products) in zip(self.table.scatters, self.scattering, strict=True):
+            tie, c = turned.T @ C, C.shape[2]
+            inner = np.full((len(C), c + 1, c + 1), left)  # of columns and residual, beside the set
+            inner[:, :c, :c], inner[:, c, :c] = products - tie.swapaxes(1, 2) @ tie, self.e @ C - b @ tie
+            v = np.append(np.repeat(widths[:, None], c, axis=1), np.ones((len(widths), 1)), axis=1)[:, None]
+            root = np.linalg.cholesky(inner * v[..., None] * v[..., None, :] + np.diag([1.0] * c + [0.0]))
+            diagonal = np.diagonal(root, axis1=2, axis2=3)
+            gains = 0.5 * (left - diagonal[..., c] ** 2) - np.log(diagonal[..., :c]).sum(axis=2)
+            for k, gain, width in zip(numbers, gains.max(axis=0), widths[gains.argmax(axis=0)], strict=True):
+                if np.isfinite(logs[k]):
+                    beside = tuple(sorted((*sides, (k, float(width)))))
+                    yield own.log + float(gain + logs[k]), Scatter(own.scatter.scales, beside), own
 
 
 def search(
