@@ -226,7 +226,8 @@ class Weighing:
     def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
         """Fits a cause joined to what acts in a fit, beside what scatters."""
         z, kept = near.moved(problem, start.effect)
-        self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
+        with suppress(SolveError):
+            self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
 
     def _promising(
         self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
@@ -272,11 +273,11 @@ class Weighing:
         fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
         with suppress(SolveError):
-            near = fitted(problem, rest, fit.look.z, fit.noise.scales) if gone else fit
+            forms = {b.id: known.forms.get(b.id, {}) for b in rest}
+            near = self._fit_exactly(problem, rest, fit.look.z, fit.noise.scales, extras, forms) if gone else fit
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
             for start, logs in self._promising(self.screened(near, problem), taken, EXCHANGED):
-                forms = {b.id: known.forms.get(b.id, {}) for b in rest} | {start.acting.id: logs}
-                self._fit_joined(near, problem, start, extras, forms)
+                self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
 
     def _fit_alike(self) -> None:
         """Fits what is near the leading set with its gross readings, so that both are weighed by the same readings."""
@@ -285,7 +286,8 @@ class Weighing:
         for key, h in ranked:
             if h.log_joint > best - NEAR and (*key[:2], aside) not in self.hypotheses:
                 look, problem = h.fit.look, self._beside(aside, h.extras)
-                self._fit_exactly(problem, look.acting, look.z, h.fit.noise.scales, h.extras, h.forms)
+                with suppress(SolveError):
+                    self._fit_exactly(problem, look.acting, look.z, h.fit.noise.scales, h.extras, h.forms)
 
     def _beside(self, aside: frozenset[Aside], extras: Sequence[Extra]) -> Problem:
         """The problem with some gross readings and scatters."""
@@ -339,7 +341,8 @@ class Weighing:
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
         extras = tuple(Extra(t, w) for t, w in scatters)
-        self._fit_exactly(self._beside(own.key[2], extras), acting, z, np.array(s.scatter.scales), extras, forms)
+        with suppress(SolveError):
+            self._fit_exactly(self._beside(own.key[2], extras), acting, z, np.array(s.scatter.scales), extras, forms)
 
     def _fit_exactly(
         self,
@@ -349,11 +352,16 @@ class Weighing:
         scales: np.ndarray,
         extras: tuple[Extra, ...],
         forms: Forms,
-    ) -> None:
-        """Fits causes beside scatters from where they begin, if the model can be run there."""
-        with suppress(SolveError):
-            key = frozenset(a.formula for a in acting), frozenset(e.of.label for e in extras), problem.aside
-            self._keep(key, fitted(problem, acting, z, scales), extras, forms)
+    ) -> Fit:
+        """Fits causes beside scatters from where they begin, as a hypothesis.
+
+        Raises:
+            SolveError: the model cannot be run there
+        """
+        key = frozenset(a.formula for a in acting), frozenset(e.of.label for e in extras), problem.aside
+        fit = fitted(problem, acting, z, scales)
+        self._keep(key, fit, extras, forms)
+        return fit
 
     def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Forms) -> None:
         """A fitted hypothesis with its log joint probability."""
