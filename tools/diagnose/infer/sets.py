@@ -16,7 +16,7 @@ import numpy as np
 
 from .evidence import White, averaged, by_width, mass_inside, prior_mass, split_error
 from .prior import SAME, Prior, kind
-from .problem import Noise
+from .problem import Aside, Noise
 from .terms import Term
 
 #: Sizes that may act together, gross readings among them.
@@ -115,6 +115,10 @@ class Linear:
         own = (width * self.terms[k].columns for k, width in widths)
         return np.concatenate([np.zeros((len(self.residual), 0)), *own], axis=1)
 
+    def aside(self, own: TermSet) -> frozenset[Aside]:
+        """The gross readings of a set."""
+        return frozenset(aside for k in own.members if (aside := self.terms[k].aside) is not None)
+
     def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         G = self.sized(own.sized)
@@ -135,12 +139,12 @@ class Table:
         own = linear.terms[: self.n]
         self.columns = np.concatenate([t.columns for t in own], axis=1)
         alike: dict[tuple[int, tuple[float, ...]], list[int]] = {}
-        for k, t in enumerate(linear.terms[self.n :], self.n):
-            alike.setdefault((t.columns.shape[1], tuple(t.widths)), []).append(k)
+        for number, t in enumerate(linear.terms[self.n :], self.n):
+            alike.setdefault((t.columns.shape[1], tuple(t.widths)), []).append(number)
         #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
         self.scatters = [
-            (own, np.array(widths), np.concatenate([linear.terms[k].columns for k in own], axis=1))
-            for (_, widths), own in alike.items()
+            (numbers, np.array(widths), np.concatenate([linear.terms[k].columns for k in numbers], axis=1))
+            for (_, widths), numbers in alike.items()
         ]
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
+from .evidence import WIDTHS
 from .prior import GROSS, OUTSIDE, Prior
 from .problem import PACES, Acting, Aside, Look, Problem
 
@@ -64,6 +65,13 @@ class Term:
     def label(self) -> str:
         """Name with the form, or with the channels of a remainder."""
         return f"{self.name}: {self.formula.form.name if self.formula else ', '.join(self.channels)}"
+
+
+def as_term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:
+    """A form of a cause that acts, or may."""
+    formula = acting.formula
+    cause = formula.cause
+    return Term(cause.id, cause.family, float(log_prior), column, WIDTHS, *formula.limits, acting, formula)
 
 
 def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:

@@ -16,13 +16,13 @@ from scipy.stats import chi2
 from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import sets
-from .evidence import WIDTHS, White
+from .evidence import White
 from .fit import Fit, fitted
 from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
 from .screen import Screen, Start, null_draws, screened
-from .terms import ERRORS, Term, gross, remainders, spreads
+from .terms import ERRORS, as_term, gross, remainders, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
 LOOKS = 4
@@ -124,7 +124,7 @@ class Weighing:
         self.problem, self.null, self.first = problem, null, first
         if options.critical is None:  # else gross readings are known as well
             leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
-            self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
+            self.problem = problem.without(problem.aside | self.linear.aside(leader))
         if self.problem.aside != problem.aside:
             self.null = fitted(self.problem, (), null.look.z)
             self.first = self.screened(self.null, self.problem)
@@ -195,12 +195,12 @@ class Weighing:
         """The likeliest sets of terms at a linearisation."""
         problem, J = self.whole, near.look.jacobian
         candidates = zip(look.candidates, self._weights(look), look.effects.T, strict=True)
-        terms = [_term(c, log, effect[:, None]) for c, log, effect in candidates]
+        terms = [as_term(c, log, effect[:, None]) for c, log, effect in candidates]
         effects, acting = np.zeros(problem.m), near.look.acting
         place = problem.nz
         for a in acting:
             log = self.prior.share[a.id] + np.log(a.formula.form.weight)  # its shapes are fitted, none a sample of many
-            terms.append(_term(a, log, J[:, [place]]))
+            terms.append(as_term(a, log, J[:, [place]]))
             effects += a.t[0] * J[:, place]
             place += a.formula.size
         terms += gross(problem, near.look)
@@ -314,7 +314,7 @@ class Weighing:
     def _key(self, s: sets.TermSet) -> Key:
         terms = self.linear.terms
         forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
-        aside = self.whole.aside | _aside(terms, s)
+        aside = self.whole.aside | self.linear.aside(s)
         return frozenset(forms), frozenset(terms[k].label for k, _ in s.scatter.beside), aside
 
     def _forms(self, own: _Combination, all_: Iterable[_Combination]) -> dict[str, dict[str, float]]:
@@ -393,15 +393,3 @@ class Weighing:
             float(chi2.sf(e @ e, self.problem.m - len(self.problem.aside))),
             self.prior,
         )
-
-
-def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
-    """The gross readings of a set."""
-    return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
-
-
-def _term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:
-    """A form of a cause that acts, or may."""
-    formula = acting.formula
-    cause = formula.cause
-    return Term(cause.id, cause.family, float(log_prior), column, WIDTHS, *formula.limits, acting, formula)
