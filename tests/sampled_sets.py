@@ -25,8 +25,18 @@ BEGINNING = 1 / 3
 def shares(linear: sets.Linear, seed: int, rounds: int) -> dict[str, float]:
     """Name of a term -> share of the draws in which it acts, in any form."""
     draws = list(Sampler(linear, seed).draws(rounds))[round(BEGINNING * rounds) :]
-    names = [{linear.terms[k].name for k in draw} for draw in draws]
-    return {name: float(np.mean([name in own for own in names])) for name in sorted(set().union(*names))}
+    return _by_name(linear, draws, np.ones(len(draws)))
+
+
+def likely(linear: sets.Linear, found: Sequence[sets.TermSet]) -> dict[str, float]:
+    """Name of a term -> probability that it acts, by the sets of the search."""
+    return _by_name(linear, [s.terms for s in found], np.exp([s.log - found[0].log for s in found]))
+
+
+def _by_name(linear: sets.Linear, drawn: Sequence[Sequence[int]], weights: np.ndarray) -> dict[str, float]:
+    """Name of a term -> share of the sets in which it acts, by their weights."""
+    names = [{linear.terms[k].name for k in own} for own in drawn]
+    return {n: float(np.average([n in own for own in names], weights=weights)) for n in sorted(set().union(*names))}
 
 
 class Sampler:
@@ -106,10 +116,3 @@ def gain(term: Term, columns: np.ndarray, e: np.ndarray) -> np.ndarray:
 def log_inside(term: Term, mean: np.ndarray, sd: np.ndarray) -> np.ndarray:
     """Log probability that a size is inside its bounds."""
     return np.asarray(np.log(np.maximum(ndtr((term.high - mean) / sd) - ndtr((term.low - mean) / sd), 1e-300)))
-
-
-def likely(linear: sets.Linear, found: Sequence[sets.TermSet]) -> dict[str, float]:
-    """Name of a term -> probability that it acts, by the sets of the search."""
-    p = np.exp([s.log - found[0].log for s in found])
-    names = [{linear.terms[k].name for k in s.terms} for s in found]
-    return {name: float(p[[name in own for own in names]].sum() / p.sum()) for name in sorted(set().union(*names))}

@@ -183,8 +183,8 @@ def test_search_and_sampler_name_the_same_in_the_measured_campaign() -> None:
         own.ask_alarm()
         own.run()
         near = own.leader().fit
-        found = likely(own.linear, own.search(near, own.screened(near, own.problem), "", 0.0))
-        drawn = shares(own.linear, seed, 45)
+        searched = own.search(near, own.screened(near, own.problem), "", 0.0)  # makes the linear problem of both
+        found, drawn = likely(own.linear, searched), shares(own.linear, seed, 45)
         print(seed, {k: (round(found.get(k, 0.0), 2), round(drawn.get(k, 0.0), 2)) for k in found if found[k] > 0.3})
         named |= {frozenset(k for k, share in by.items() if share > 0.5) for by in (found, drawn)}
     assert len(named) == 1, named

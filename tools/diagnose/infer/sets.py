@@ -10,7 +10,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -105,10 +105,10 @@ class Linear:
         """The scatter with some scales."""
         return replace(self.noise, scales=np.array(scales))
 
-    def scattered(self, scatter: Scatter) -> np.ndarray:
-        """Covariance of what scatters beside the loose terms (M, M)."""
-        columns = self.sized(scatter.beside)
-        return np.asarray(columns @ columns.T)
+    def covariance(self, scatter: Scatter, members: Iterable[tuple[int, float]] = ()) -> np.ndarray:
+        """Of the residual in a scatter, with sizes of some widths (M, M)."""
+        columns = self.sized((*members, *scatter.beside))
+        return np.asarray(self.at(scatter.scales).covariance + self.known + columns @ columns.T)
 
     def sized(self, widths: Iterable[tuple[int, float]]) -> np.ndarray:
         """Columns of terms times their widths (M, k)."""
@@ -121,14 +121,11 @@ class Linear:
 
     def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
         """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
-        G = self.sized(own.sized)
-        noise = self.at(own.scatter.scales)
-        passing = noise.passing
+        passing = self.at(own.scatter.scales).passing
         for k, width in own.scatter.beside:
             if (part := self.terms[k].passing) is not None:
                 passing = passing + width**2 * part @ self.terms[k].columns.T
-        whole = noise.covariance + self.known + self.scattered(own.scatter) + G @ G.T
-        return split_error(whole, passing, self.residual, kept, held)
+        return split_error(self.covariance(own.scatter, own.sized), passing, self.residual, kept, held)
 
 
 class Table:
@@ -195,11 +192,10 @@ class Whitened:
 
     def __init__(self, table: Table, scatter: Scatter) -> None:
         self.table, self.scatter, linear = table, scatter, table.linear
-        noise = linear.at(scatter.scales)
-        self.white = White.of(noise.covariance + linear.known + linear.scattered(scatter))
+        self.white = White.of(linear.covariance(scatter))
         self.e = self.white(linear.residual)
         #: Log density of the residual without any size.
-        self.log = self.white.log_density(self.e) + noise.log_prior
+        self.log = self.white.log_density(self.e) + linear.at(scatter.scales).log_prior
 
     @cached_property
     def sizes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -303,15 +299,15 @@ class Whitened:
                 count[family] = count.get(family, 0) + 1
                 yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
 
-    def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
+    def scatters(self, own: TermSet, plain: Whitened) -> Iterator[tuple[float, Scatter, TermSet]]:
         """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
 
         Left of the set are all members, none, or all but those of one family or instrument that a scatter may replace.
+        What is one more is scored where the same scales alone whiten (`plain`).
         """
         sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
-        plain = Whitened(table, Scatter(scales)) if sides else self
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
             near = self if beside == sides else Whitened(table, Scatter(scales, beside))
             for kept in dict.fromkeys([*left, ()]):
@@ -320,26 +316,27 @@ class Whitened:
                 yield from plain._further(base)
         linear = self.table.linear
         columns = linear.sized((*own.sized, *sides))
-        tied = columns @ columns.T
-        found = linear.at(scales).fitted(linear.residual, linear.known + tied).scales
+        found = linear.at(scales).fitted(linear.residual, linear.known + columns @ columns.T).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Columns of scatters that the table has together, whitened (k, M, c), and their products (k, c, c)."""
-        whole = [(self.white(C), len(own)) for own, _, C in self.table.scatters]
-        found = [np.ascontiguousarray(C.reshape(len(C), k, -1).swapaxes(0, 1)) for C, k in whole]
-        return [(C, C.swapaxes(1, 2) @ C) for C in found]
+        found = []
+        for numbers, _, columns in self.table.scatters:
+            C = np.ascontiguousarray(self.white(columns).reshape(len(self.e), len(numbers), -1).swapaxes(0, 1))
+            found.append((C, C.swapaxes(1, 2) @ C))
+        return found
 
     def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
         """One more scatter beside those of a set, at its likeliest width: log joint density, scatter, the set.
 
         All that the set has is beside this scatter, so that columns are whitened once for sets of any scatter.
         """
-        kept, sides = [*own.members, *(k for k, _ in own.scatter.beside)], own.scatter.beside
+        sides = own.scatter.beside
         turned, b, _ = self.beside((*own.sized, *sides))
-        logs, left = self.table.log_priors(kept) - self.table.log_prior(kept), self.e @ self.e - b @ b
+        logs, left = self.table.log_priors(own.terms) - self.table.log_prior(own.terms), self.e @ self.e - b @ b
         for (numbers, widths, _), (C, products) in zip(self.table.scatters, self.scattering, strict=True):
             tie, c = turned.T @ C, C.shape[2]
             inner = np.full((len(C), c + 1, c + 1), left)  # of columns and residual, beside the set
@@ -370,6 +367,11 @@ def search(
     for k, own in enumerate(begun):
         heapq.heappush(queue, (-np.inf, k, own, ()))
     seen, best, number = set[Scatter](), -np.inf, len(begun)
+
+    @lru_cache(maxsize=1)  # scatters that follow each other mostly have the same scales
+    def plain(scales: tuple[float, ...]) -> Whitened:
+        return Whitened(table, Scatter(scales))
+
     while queue and len(seen) < scatters:
         promise, _, scatter, starts = heapq.heappop(queue)
         if scatter in seen or -promise < best - WINDOW:
@@ -382,7 +384,7 @@ def search(
             if s.terms not in found or found[s.terms].log < s.log:
                 found[s.terms] = s
         best = max(best, sets[0].log)
-        for log, other, base in white.scatters(sets[0]):
+        for log, other, base in white.scatters(sets[0], plain(scatter.scales)):
             if other not in seen and log > best - WINDOW:
                 number += 1
                 heapq.heappush(queue, (-log, number, other, (base, *sets[:2])))

@@ -250,9 +250,10 @@ class Weighing:
                     yield look.start(i), logs
 
     def _exchange(self) -> None:
-        """Fits what promises most in place of each cause of the leading set, and beside the best sets of fewer causes.
+        """Fits the leading set without each of its causes, and with what promises most in its place.
 
-        To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none.
+        To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none; so
+        what promises most beside the best sets of fewer causes is fitted, too.
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         leader, best = ranked[0]
@@ -269,7 +270,7 @@ class Weighing:
                 self._join_all(key, fewer)
 
     def _join_all(self, key: Key, known: Hypothesis, gone: Acting | Extra | None = None) -> None:
-        """Fits what promises most beside a hypothesis, or beside what is left of it."""
+        """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
         fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
         with suppress(SolveError):
@@ -331,16 +332,12 @@ class Weighing:
     def _fit(self, own: _Combination, near: Fit, forms: Forms) -> None:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
-        V = self.linear.at(s.scatter.scales).covariance + self.linear.known
-        scatters = [(terms[k], width) for k, width in s.scatter.beside]
-        G = np.concatenate([np.zeros((len(V), 0)), *(terms[k].columns for k in s.members)], axis=1)
-        v = np.array(s.widths) ** 2
-        a = White.of(V + self.linear.scattered(s.scatter) + G * v @ G.T).back(self.linear.residual)
-        J = near.look.jacobian[:, : self.whole.nz]
-        z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
+        a = White.of(self.linear.covariance(s.scatter, s.sized)).back(self.linear.residual)
+        z = np.clip(near.look.jacobian[:, : self.whole.nz].T @ a, -6.0, 6.0)
+        t = np.array(s.widths) * (self.linear.sized(s.sized).T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
-        extras = tuple(Extra(t, w) for t, w in scatters)
+        extras = tuple(Extra(terms[k], width) for k, width in s.scatter.beside)
         with suppress(SolveError):
             self._fit_exactly(self._beside(own.key[2], extras), acting, z, np.array(s.scatter.scales), extras, forms)
 
