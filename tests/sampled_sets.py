@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from gearheat.tools.diagnose.infer import sets
-from gearheat.tools.diagnose.infer.terms import Term
+from gearheat.tools.diagnose.infer.terms import Linear, Term, TermSet
 from scipy.linalg import solve_triangular
 from scipy.special import ndtr
 
@@ -22,18 +22,18 @@ STEPS, STEP = 3, 0.3
 BEGINNING = 1 / 3
 
 
-def shares(linear: sets.Linear, seed: int, rounds: int) -> dict[str, float]:
+def shares(linear: Linear, seed: int, rounds: int) -> dict[str, float]:
     """Name of a term -> share of the draws in which it acts, in any form."""
     draws = list(Sampler(linear, seed).draws(rounds))[round(BEGINNING * rounds) :]
     return _by_name(linear, draws, np.ones(len(draws)))
 
 
-def likely(linear: sets.Linear, found: Sequence[sets.TermSet]) -> dict[str, float]:
+def likely(linear: Linear, found: Sequence[TermSet]) -> dict[str, float]:
     """Name of a term -> probability that it acts, by the sets of the search."""
     return _by_name(linear, [s.terms for s in found], np.exp([s.log - found[0].log for s in found]))
 
 
-def _by_name(linear: sets.Linear, drawn: Sequence[Sequence[int]], weights: np.ndarray) -> dict[str, float]:
+def _by_name(linear: Linear, drawn: Sequence[Sequence[int]], weights: np.ndarray) -> dict[str, float]:
     """Name of a term -> share of the sets in which it acts, by their weights."""
     names = [{linear.terms[k].name for k in own} for own in drawn]
     return {n: float(np.average([n in own for own in names], weights=weights)) for n in sorted(set().union(*names))}
@@ -42,7 +42,7 @@ def _by_name(linear: sets.Linear, drawn: Sequence[Sequence[int]], weights: np.nd
 class Sampler:
     """A chain that begins with nothing."""
 
-    def __init__(self, linear: sets.Linear, seed: int) -> None:
+    def __init__(self, linear: Linear, seed: int) -> None:
         self.linear, self.rng, self.table = linear, np.random.default_rng(seed), sets.Table(linear)
         self.scales = np.zeros(len(linear.noise.loose))
         #: The residual, and columns of all terms, which end there.

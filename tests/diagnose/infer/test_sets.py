@@ -18,9 +18,9 @@ from gearheat.tools.diagnose.infer import sets
 from gearheat.tools.diagnose.infer.evidence import WIDTHS
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Aside, Noise
-from gearheat.tools.diagnose.infer.terms import ERRORS, SPREADS, Term
+from gearheat.tools.diagnose.infer.terms import ERRORS, SPREADS, Linear, Scatter, Term, TermSet
 from gearheat.tools.diagnose.infer.weigh import Options, Weighing
-from gearheat.tools.diagnose.model.entries import Term as Scatter
+from gearheat.tools.diagnose.model import entries
 from gearheat.tools.diagnose.request import Request, read
 from gearheat.tools.diagnose.setting import setting
 from sampled_sets import likely, shares
@@ -31,7 +31,7 @@ M, CAUSES = 40, 12
 CRITICAL = 2.0
 
 
-def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = False) -> sets.Linear:
+def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = False) -> Linear:
     """Twelve causes with random effects on forty readings of noise one, and further terms."""
     rng = np.random.default_rng(seed)
     names = [f"cause{k}" for k in range(CAUSES)]
@@ -45,8 +45,8 @@ def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = 
     gross = [t for t in more if t.aside is not None]
     scatters = [t for t in more if t.aside is None]
 
-    noise = Noise((Scatter("readings", variance=np.ones(M), loose=0.25),), np.zeros(1))
-    return sets.Linear([*own, *gross, *scatters], residual, np.zeros((M, M)), noise, prior, CRITICAL, 8)
+    noise = Noise((entries.Term("readings", variance=np.ones(M), loose=0.25),), np.zeros(1))
+    return Linear([*own, *gross, *scatters], residual, np.zeros((M, M)), noise, prior, CRITICAL, 8)
 
 
 def effects_of(rng: np.random.Generator) -> np.ndarray:
@@ -59,7 +59,7 @@ def noise(seed: int) -> np.ndarray:
     return np.asarray(np.random.default_rng(seed).normal(size=M))
 
 
-def named(problem: sets.Linear, found: sets.TermSet) -> set[str]:
+def named(problem: Linear, found: TermSet) -> set[str]:
     """What a set holds."""
     return {problem.terms[k].name for k in found.terms}
 
@@ -69,7 +69,7 @@ def test_all_that_acts_is_found(sizes: dict[int, float]) -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(5) + sum((t * effects[:, k] for k, t in sizes.items()), np.zeros(M))
     problem = linear(residual, [])
-    best = sets.search(problem, [sets.Scatter((0.0,))], lambda share: None)[0]
+    best = sets.search(problem, [Scatter((0.0,))], lambda share: None)[0]
     assert named(problem, best) == {f"cause{k}" for k in sizes}
 
 
@@ -78,7 +78,7 @@ def test_a_set_counts_as_much_as_its_integral() -> None:
     residual = noise(6) + 1.2 * effects[:, 4] + 0.8 * effects[:, 8]
     problem = linear(residual, [])
     table = sets.Table(problem)
-    white = sets.Whitened(table, sets.Scatter((0.0,)))
+    white = sets.Whitened(table, Scatter((0.0,)))
     for own in [(), (4,), (8,), (4, 8)]:
         logs = []
         for widths in np.array(np.meshgrid(*[WIDTHS] * len(own))).reshape(len(own), -1).T if own else [np.zeros(0)]:
@@ -94,7 +94,7 @@ def test_terms_of_one_family_are_one_answer() -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(5) + 3.0 * effects[:, 2] - 3.0 * effects[:, 7]
     problem = linear(residual, [], alike=True)
-    assert all(len(s.terms) <= 1 for s in sets.search(problem, [sets.Scatter((0.0,))], lambda share: None))
+    assert all(len(s.terms) <= 1 for s in sets.search(problem, [Scatter((0.0,))], lambda share: None))
 
 
 def test_a_gross_reading_is_no_cause_and_no_scatter() -> None:
@@ -104,7 +104,7 @@ def test_a_gross_reading_is_no_cause_and_no_scatter() -> None:
     column[17] = 1.0
     reading = Term("reading 17", "reading 17", np.log(0.002), column, ERRORS, aside=Aside(17))
     problem = linear(residual, [reading])
-    best = sets.search(problem, [sets.Scatter((0.0,))], lambda share: None)[0]
+    best = sets.search(problem, [Scatter((0.0,))], lambda share: None)[0]
     assert named(problem, best) == {"reading 17"}
     assert abs(best.scatter.scales[0]) < 0.3
 
@@ -116,7 +116,7 @@ def test_a_walk_beside_its_own_scatter() -> None:
     residual = rng.standard_normal(M) + 1.5 * walk @ rng.standard_normal(M)
     term = Term("cause0", "walk", np.log(0.05), walk, SPREADS, formula=SimpleNamespace(form=SimpleNamespace(name="")))  # type: ignore[arg-type]
     problem = linear(residual, [term])
-    best = sets.search(problem, [sets.Scatter((1.2,))], lambda share: None)[0]
+    best = sets.search(problem, [Scatter((1.2,))], lambda share: None)[0]
     assert CAUSES in best.terms
     assert dict(best.scatter.beside)[CAUSES] in (1.0, 2.0)
     assert abs(best.scatter.scales[0]) < 0.5
@@ -126,9 +126,9 @@ def test_no_better_set_of_two_is_missed() -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(9) + 1.0 * effects[:, 3] + 1.0 * effects[:, 6]
     problem = linear(residual, [])
-    white = sets.Whitened(sets.Table(problem), sets.Scatter((0.0,)))
+    white = sets.Whitened(sets.Table(problem), Scatter((0.0,)))
     every = [white.scored(own, [1.6] * len(own)) for n in (0, 1, 2) for own in combinations(range(CAUSES), n)]
-    found = [s for s in sets.search(problem, [sets.Scatter((0.0,))], lambda share: None) if len(s.terms) <= 2]
+    found = [s for s in sets.search(problem, [Scatter((0.0,))], lambda share: None) if len(s.terms) <= 2]
     assert found[0].terms == max(every, key=lambda s: s.log).terms
 
 
@@ -144,7 +144,7 @@ def test_a_walk_is_found_where_a_size_and_another_scatter_stand_in_for_it(seed: 
     steps = Term("steps", "remainder", np.log(0.06), pairs, SPREADS)
     wander = Term("cause1", "walk", np.log(1 / 12), walk, SPREADS, formula=named_so)
     whole = replace(problem, terms=[trend, *problem.terms[1:], steps, wander])
-    best = sets.search(whole, [sets.Scatter((0.0,))], lambda share: None)[0]
+    best = sets.search(whole, [Scatter((0.0,))], lambda share: None)[0]
     assert named(whole, best) == {"cause1"}
 
 
@@ -163,7 +163,7 @@ def test_a_cause_that_has_a_size_and_is_drawn_anew_counts_once() -> None:
 def test_what_acts_is_as_likely_as_a_sampler_says() -> None:
     effects = effects_of(np.random.default_rng(1))
     problem = linear(noise(9) + 2.0 * effects[:, 3] + 0.6 * effects[:, 6], [])
-    found = likely(problem, sets.search(problem, [sets.Scatter((0.0,))], lambda share: None))
+    found = likely(problem, sets.search(problem, [Scatter((0.0,))], lambda share: None))
     drawn = shares(problem, 1, 300)
     for name in found.keys() | drawn.keys():
         assert drawn.get(name, 0.0) == pytest.approx(found.get(name, 0.0), abs=0.12), (name, found, drawn)

@@ -35,7 +35,11 @@ class White:
 
     def back(self, columns: np.ndarray) -> np.ndarray:
         """The inverse covariance times columns (M,) or (M, k)."""
-        return self._solved(self(columns), 0)
+        return self.turned(self(columns))
+
+    def turned(self, columns: np.ndarray) -> np.ndarray:
+        """Whitened columns (M, k) such that their product with others is that of both whitened."""
+        return self._solved(columns, 0)
 
     def _solved(self, columns: np.ndarray, turned: int) -> np.ndarray:
         """What L, or L', times the result is; LAPACK by hand, as checks take longer than such sizes do."""

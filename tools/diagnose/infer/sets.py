@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from .evidence import White, averaged, by_width, mass_inside, prior_mass, split_error
-from .prior import SAME, Prior, kind
-from .problem import Aside, Noise
-from .terms import Term
+from .evidence import White, averaged, by_width, mass_inside, prior_mass
+from .prior import SAME, kind
+from .terms import Linear, Scatter, TermSet
 
 #: Sizes that may act together, gross readings among them.
 MOST = 12
@@ -34,98 +32,8 @@ SCATTERS = 8
 #: Rounds of choosing the widths of a set's members in turn.
 ROUNDS = 2
 
-
-@dataclass(frozen=True)
-class Scatter:
-    """What whitens: logarithms of the scales of the loose terms, and widths of the scatters beside them by number."""
-
-    scales: tuple[float, ...]
-    beside: tuple[tuple[int, float], ...] = ()
-
-
 #: Minus a log joint density, members and widths of a set that is worth a look.
 _Offer = tuple[float, tuple[int, ...], tuple[float, ...]]
-
-
-@dataclass(frozen=True)
-class TermSet:
-    """Sizes that act together in a scatter.
-
-    Attributes:
-        members: numbers of the terms, in order
-        widths: standard deviation of each
-        scatter: beside them
-        log: log joint density with the residual
-    """
-
-    members: tuple[int, ...]
-    widths: tuple[float, ...]
-    scatter: Scatter
-    log: float
-
-    @property
-    def sized(self) -> tuple[tuple[int, float], ...]:
-        """Members and their widths."""
-        return tuple(zip(self.members, self.widths, strict=True))
-
-    @property
-    def terms(self) -> tuple[int, ...]:
-        """Numbers of all terms, scatters too."""
-        return tuple(sorted((*self.members, *(k for k, _ in self.scatter.beside))))
-
-
-@dataclass(frozen=True, eq=False)
-class Linear:
-    """A problem to first order.
-
-    Attributes:
-        terms: all that may act, sizes and gross readings before scatters
-        residual: (M,)
-        known: covariance of what nuisances do (M, M)
-        noise: its scatter
-        prior: of causes
-        critical: log prior odds of nothing against one cause
-        most: causes that may act together
-    """
-
-    terms: Sequence[Term]
-    residual: np.ndarray
-    known: np.ndarray
-    noise: Noise
-    prior: Prior
-    critical: float
-    most: int
-
-    @property
-    def n(self) -> int:
-        """Number of sizes and gross readings."""
-        return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
-
-    def at(self, scales: Sequence[float]) -> Noise:
-        """The scatter with some scales."""
-        return replace(self.noise, scales=np.array(scales))
-
-    def covariance(self, scatter: Scatter, members: Iterable[tuple[int, float]] = ()) -> np.ndarray:
-        """Of the residual in a scatter, with sizes of some widths (M, M)."""
-        columns = self.sized((*members, *scatter.beside))
-        return np.asarray(self.at(scatter.scales).covariance + self.known + columns @ columns.T)
-
-    def sized(self, widths: Iterable[tuple[int, float]]) -> np.ndarray:
-        """Columns of terms times their widths (M, k)."""
-        own = (width * self.terms[k].columns for k, width in widths)
-        return np.concatenate([np.zeros((len(self.residual), 0)), *own], axis=1)
-
-    def aside(self, own: TermSet) -> frozenset[Aside]:
-        """The gross readings of a set."""
-        return frozenset(aside for k in own.members if (aside := self.terms[k].aside) is not None)
-
-    def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
-        passing = self.at(own.scatter.scales).passing
-        for k, width in own.scatter.beside:
-            if (part := self.terms[k].passing) is not None:
-                passing = passing + width**2 * part @ self.terms[k].columns.T
-        return split_error(self.covariance(own.scatter, own.sized), passing, self.residual, kept, held)
 
 
 class Table:
@@ -188,11 +96,14 @@ class Table:
 
 
 class Whitened:
-    """All terms in the units of one scatter."""
+    """All terms in the units of one scatter; `plain` is the same by its scales alone, where it has more."""
 
-    def __init__(self, table: Table, scatter: Scatter) -> None:
-        self.table, self.scatter, linear = table, scatter, table.linear
-        self.white = White.of(linear.covariance(scatter))
+    def __init__(self, table: Table, scatter: Scatter, plain: Whitened | None = None) -> None:
+        self.table, self.scatter, self.plain, linear = table, scatter, plain, table.linear
+        columns = linear.sized(scatter.beside)
+        base = plain.covariance if plain else linear.covariance(scatter.scales)
+        self.covariance: np.ndarray = base + columns @ columns.T
+        self.white = White.of(self.covariance)
         self.e = self.white(linear.residual)
         #: Log density of the residual without any size.
         self.log = self.white.log_density(self.e) + linear.at(scatter.scales).log_prior
@@ -299,56 +210,67 @@ class Whitened:
                 count[family] = count.get(family, 0) + 1
                 yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
 
-    def scatters(self, own: TermSet, plain: Whitened) -> Iterator[tuple[float, Scatter, TermSet]]:
+    def scatters(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
         """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
 
         Left of the set are all members, none, or all but those of one family or instrument that a scatter may replace.
-        What is one more is scored where the same scales alone whiten (`plain`).
+        What is one more and comes to less than the least is left out.
         """
         sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
-            near = self if beside == sides else Whitened(table, Scatter(scales, beside))
+            near = self if beside == sides else Whitened(table, Scatter(scales, beside), self.plain)
             for kept in dict.fromkeys([*left, ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
-                yield from plain._further(base)
+                yield from near._further(base, least)
         linear = self.table.linear
-        columns = linear.sized((*own.sized, *sides))
+        columns = linear.sized(own.wide)
         found = linear.at(scales).fitted(linear.residual, linear.known + columns @ columns.T).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Columns of scatters that the table has together, whitened (k, M, c), and their products (k, c, c)."""
+        """Of scatters that the table has together: products of whitened columns (k, c, c), with the residual (k, c)."""
+        groups = range(len(self.table.scatters))
+        if self.plain is not None:
+            turned, b, _ = self.plain.beside(self.scatter.beside)
+            back = self.plain.white.turned(turned).T
+            return [self.plain._left(group, back, b) for group in groups]
         found = []
         for numbers, _, columns in self.table.scatters:
             C = np.ascontiguousarray(self.white(columns).reshape(len(self.e), len(numbers), -1).swapaxes(0, 1))
-            found.append((C, C.swapaxes(1, 2) @ C))
+            found.append((C.swapaxes(1, 2) @ C, self.e @ C))
         return found
 
-    def _further(self, own: TermSet) -> Iterator[tuple[float, Scatter, TermSet]]:
-        """One more scatter beside those of a set, at its likeliest width: log joint density, scatter, the set.
+    def _left(self, group: int, back: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same of one group beside terms: what ties columns to them (j, M), and what they explain (j,)."""
+        products, along = self.scattering[group]
+        tie = (back @ self.table.scatters[group][2]).reshape(len(back), *along.shape).swapaxes(0, 1)
+        return products - tie.swapaxes(1, 2) @ tie, along - b @ tie
 
-        All that the set has is beside this scatter, so that columns are whitened once for sets of any scatter.
-        """
-        sides = own.scatter.beside
-        turned, b, _ = self.beside((*own.sized, *sides))
-        logs, left = self.table.log_priors(own.terms) - self.table.log_prior(own.terms), self.e @ self.e - b @ b
-        for (numbers, widths, _), (C, products) in zip(self.table.scatters, self.scattering, strict=True):
-            tie, c = turned.T @ C, C.shape[2]
-            inner = np.full((len(C), c + 1, c + 1), left)  # of columns and residual, beside the set
-            inner[:, :c, :c], inner[:, c, :c] = products - tie.swapaxes(1, 2) @ tie, self.e @ C - b @ tie
+    def _further(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
+        """One more scatter beside a set in this one, at its likeliest width: log joint density, scatter, the set."""
+        turned, b, _ = self.beside(own.sized)
+        back, left = self.white.turned(turned).T, self.e @ self.e - b @ b
+        logs = own.log + self.table.log_priors(own.terms) - self.table.log_prior(own.terms)
+        for group, (numbers, widths, _) in enumerate(self.table.scatters):
+            if not np.isfinite(logs[numbers]).any():
+                continue
+            products, along = self._left(group, back, b)
+            k, c = along.shape
+            inner = np.full((k, c + 1, c + 1), left)  # of columns and residual
+            inner[:, :c, :c], inner[:, c, :c] = products, along
             v = np.append(np.repeat(widths[:, None], c, axis=1), np.ones((len(widths), 1)), axis=1)[:, None]
             root = np.linalg.cholesky(inner * v[..., None] * v[..., None, :] + np.diag([1.0] * c + [0.0]))
             diagonal = np.diagonal(root, axis1=2, axis2=3)
             gains = 0.5 * (left - diagonal[..., c] ** 2) - np.log(diagonal[..., :c]).sum(axis=2)
-            for k, gain, width in zip(numbers, gains.max(axis=0), widths[gains.argmax(axis=0)], strict=True):
-                if np.isfinite(logs[k]):
-                    beside = tuple(sorted((*sides, (k, float(width)))))
-                    yield own.log + float(gain + logs[k]), Scatter(own.scatter.scales, beside), own
+            found, best = logs[numbers] + gains.max(axis=0), widths[gains.argmax(axis=0)]
+            for i in np.flatnonzero(found > least):
+                beside = tuple(sorted((*own.scatter.beside, (numbers[i], float(best[i])))))
+                yield float(found[i]), Scatter(own.scatter.scales, beside), own
 
 
 def search(
@@ -378,13 +300,13 @@ def search(
             continue
         seen.add(scatter)
         progress(len(seen) / scatters)
-        white = Whitened(table, scatter)
+        white = Whitened(table, scatter, plain(scatter.scales))
         sets = white.search(starts, LOOKS[bool(starts)])
         for s in sets:
             if s.terms not in found or found[s.terms].log < s.log:
                 found[s.terms] = s
         best = max(best, sets[0].log)
-        for log, other, base in white.scatters(sets[0], plain(scatter.scales)):
+        for log, other, base in white.scatters(sets[0], best - WINDOW):
             if other not in seen and log > best - WINDOW:
                 number += 1
                 heapq.heappush(queue, (-log, number, other, (base, *sets[:2])))

@@ -1,17 +1,17 @@
-"""Everything that may be wrong, to first order: one list of terms, each a size or a scatter with its columns."""
+"""Everything that may be wrong, to first order: one list of terms, each a size or a scatter with its columns; sets."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
-from .evidence import WIDTHS
+from .evidence import WIDTHS, split_error
 from .prior import GROSS, OUTSIDE, Prior
-from .problem import PACES, Acting, Aside, Look, Problem
+from .problem import PACES, Acting, Aside, Look, Noise, Problem
 
 #: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
 SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
@@ -145,3 +145,97 @@ def gross(problem: Problem, look: Look) -> Iterator[Term]:
         for k in np.flatnonzero((columns**2).sum(axis=0) > 0):
             aside, name = Aside(int(k), sensor), f"{sensor} {k}"
             yield Term(name, name, float(np.log(GROSS)), columns[:, [k]], ERRORS, aside=aside)
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """What whitens: logarithms of the scales of the loose terms, and widths of the scatters beside them by number."""
+
+    scales: tuple[float, ...]
+    beside: tuple[tuple[int, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class TermSet:
+    """Sizes that act together in a scatter.
+
+    Attributes:
+        members: numbers of the terms, in order
+        widths: standard deviation of each
+        scatter: beside them
+        log: log joint density with the residual
+    """
+
+    members: tuple[int, ...]
+    widths: tuple[float, ...]
+    scatter: Scatter
+    log: float
+
+    @property
+    def sized(self) -> tuple[tuple[int, float], ...]:
+        """Members and their widths."""
+        return tuple(zip(self.members, self.widths, strict=True))
+
+    @property
+    def wide(self) -> tuple[tuple[int, float], ...]:
+        """The same of all terms, scatters too."""
+        return *self.sized, *self.scatter.beside
+
+    @property
+    def terms(self) -> tuple[int, ...]:
+        """Numbers of all terms, scatters too."""
+        return tuple(sorted(k for k, _ in self.wide))
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A problem to first order.
+
+    Attributes:
+        terms: all that may act, sizes and gross readings before scatters
+        residual: (M,)
+        known: covariance of what nuisances do (M, M)
+        noise: its scatter
+        prior: of causes
+        critical: log prior odds of nothing against one cause
+        most: causes that may act together
+    """
+
+    terms: Sequence[Term]
+    residual: np.ndarray
+    known: np.ndarray
+    noise: Noise
+    prior: Prior
+    critical: float
+    most: int
+
+    @property
+    def n(self) -> int:
+        """Number of sizes and gross readings."""
+        return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
+
+    def at(self, scales: Sequence[float]) -> Noise:
+        """The scatter with some scales."""
+        return replace(self.noise, scales=np.array(scales))
+
+    def covariance(self, scales: Sequence[float], beside: Iterable[tuple[int, float]] = ()) -> np.ndarray:
+        """Of the residual with some scales, beside terms of some widths (M, M)."""
+        columns = self.sized(beside)
+        return np.asarray(self.at(scales).covariance + self.known + columns @ columns.T)
+
+    def sized(self, widths: Iterable[tuple[int, float]]) -> np.ndarray:
+        """Columns of terms times their widths (M, k)."""
+        own = (width * self.terms[k].columns for k, width in widths)
+        return np.concatenate([np.zeros((len(self.residual), 0)), *own], axis=1)
+
+    def aside(self, own: TermSet) -> frozenset[Aside]:
+        """The gross readings of a set."""
+        return frozenset(aside for k in own.members if (aside := self.terms[k].aside) is not None)
+
+    def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+        """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
+        passing = self.at(own.scatter.scales).passing
+        for k, width in own.scatter.beside:
+            if (part := self.terms[k].passing) is not None:
+                passing = passing + width**2 * part @ self.terms[k].columns.T
+        return split_error(self.covariance(own.scatter.scales, own.wide), passing, self.residual, kept, held)

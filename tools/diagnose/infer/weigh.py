@@ -22,7 +22,7 @@ from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
 from .screen import Screen, Start, null_draws, screened
-from .terms import ERRORS, as_term, gross, remainders, spreads
+from .terms import ERRORS, Linear, Scatter, TermSet, as_term, gross, remainders, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
 LOOKS = 4
@@ -33,8 +33,6 @@ WITHIN = 8.0
 #: Causes fitted alone where the rig is calibrated, and where the file has it: a large effect bends, and its cause may
 #: explain more than it promises to first order.
 ALONE = (4, 10)
-#: Share of what the best form of such a cause promises from which others of its forms are fitted, too.
-SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
 #: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
@@ -54,7 +52,7 @@ class _Combination:
     """Sets of terms with the same forms, scatters and gross readings, and the likeliest of them."""
 
     key: Key
-    best: sets.TermSet
+    best: TermSet
     log: float
 
 
@@ -189,9 +187,7 @@ class Weighing:
         look = self.problem.look(z)
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
-    def search(
-        self, near: Fit, look: Screen, stage: str, begun: float, scatters: int = sets.SCATTERS
-    ) -> list[sets.TermSet]:
+    def search(self, near: Fit, look: Screen, stage: str, begun: float, scatters: int = sets.SCATTERS) -> list[TermSet]:
         """The likeliest sets of terms at a linearisation."""
         problem, J = self.whole, near.look.jacobian
         candidates = zip(look.candidates, self._weights(look), look.effects.T, strict=True)
@@ -209,18 +205,17 @@ class Weighing:
         known = J[:, : problem.nz] @ J[:, : problem.nz].T
         noise = problem.noise(near.look)
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = sets.Linear(terms, residual, known, noise, self.prior, self.critical, self.options.most)
-        starts = [sets.Scatter((0.0,) * len(noise.loose)), sets.Scatter(tuple(near.noise.scales.tolist()))]
+        self.linear = Linear(terms, residual, known, noise, self.prior, self.critical, self.options.most)
+        starts = [Scatter((0.0,) * len(noise.loose)), Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):
             sizes = {e.of.label: e.size for e in extras}
             beside = tuple((k, sizes[t.label]) for k, t in enumerate(terms) if t.scatters and t.label in sizes)
-            starts = [sets.Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
+            starts = [Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
     def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        share = SHARE if near is self.null else 1.0
-        for start, logs in self._promising(look, set(), n, self.options.wanted, share):
+        for start, logs in self._promising(look, set(), n, self.options.wanted):
             self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
 
     def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
@@ -230,11 +225,11 @@ class Weighing:
             self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
 
     def _promising(
-        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
+        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
-        Causes that are taken, by name or family, are left out. Of each also the forms that promise a share of its best.
+        Causes that are taken, by name or family, are left out.
         """
         log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
@@ -244,10 +239,7 @@ class Weighing:
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
-            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
-            for i in own:
-                if i == k or value[i] > share * value[k] > 0:
-                    yield look.start(i), logs
+            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
 
     def _exchange(self) -> None:
         """Fits the leading set without each of its causes, and with what promises most in its place.
@@ -294,7 +286,7 @@ class Weighing:
         """The problem with some gross readings and scatters."""
         return self.whole.without(aside).beside(tuple(e.term for e in extras))
 
-    def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
+    def fit_sets(self, found: Sequence[TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
         combinations = self._combinations(found)
         for done, own in enumerate(combinations[:most]):
@@ -304,15 +296,15 @@ class Weighing:
             if own.key not in self.hypotheses:
                 self._fit(own, near, self._forms(own, combinations))
 
-    def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
+    def _combinations(self, found: Sequence[TermSet]) -> list[_Combination]:
         """Sets put together by their forms and scatters, the likeliest first."""
-        members: dict[Key, list[sets.TermSet]] = {}
+        members: dict[Key, list[TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
         logs = {key: float(np.logaddexp.reduce([s.log for s in own])) for key, own in members.items()}
         return sorted((_Combination(key, own[0], logs[key]) for key, own in members.items()), key=lambda c: -c.log)
 
-    def _key(self, s: sets.TermSet) -> Key:
+    def _key(self, s: TermSet) -> Key:
         terms = self.linear.terms
         forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
         aside = self.whole.aside | self.linear.aside(s)
@@ -332,7 +324,7 @@ class Weighing:
     def _fit(self, own: _Combination, near: Fit, forms: Forms) -> None:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
-        a = White.of(self.linear.covariance(s.scatter, s.sized)).back(self.linear.residual)
+        a = White.of(self.linear.covariance(s.scatter.scales, s.wide)).back(self.linear.residual)
         z = np.clip(near.look.jacobian[:, : self.whole.nz].T @ a, -6.0, 6.0)
         t = np.array(s.widths) * (self.linear.sized(s.sized).T @ a)
         begun = zip(s.members, t, strict=True)

@@ -26,7 +26,8 @@ typedef struct {
   whole steady;                               /* whether steady states are read, which no step before has a part in */
   const whole *row, *first, *read;            /* of each phase (F), (F + 1), of each step (K): number of the reading or -1 */
   const whole *paced;                         /* whether its row's pace is that of a phase (F) */
-  const whole *wanted;                        /* whether derivatives by a knob are (knobs) */
+  const whole *wanted;                        /* whether derivatives by a column are: knobs, pace, given inputs, tried
+                                                 knobs of one further setting after the other */
   const double *share;                        /* where each step ends (K) */
   const double *length, *u0, *u1, *p, *pace;  /* (n, F), (n, F, nu), (n, F, nu), (S, n, H, np), (n, H) */
   const double *local0, *local1, *start, *x0; /* (n, F, given, H), (n, F, given, H), (n, given), (n, nx) */
@@ -328,9 +329,10 @@ static void reading(Runs *R, const Found *found, const Stage *s) {
 static void tried(Runs *R, const Found *found, const Stage *s, whole setting, whole from) {
   const Plant *P = R->plant;
   const Duty *D = R->duty;
-  const whole width = D->R * P->shown;
+  const whole width = D->R * P->shown, *wanted = D->wanted + P->knobs + 1 + P->given + (setting - 1) * P->tried;
   call(R, P->trials, setting, s->w, R->sparse, R->direct);
   EACH for (whole j = 0; j < P->tried && s->on[l]; j++) {
+    if (!wanted[j]) continue;
     const whole row = (R->run[l] * (D->S - 1) + setting - 1) * D->H + D->row[s->phase];
     double *own = found->tried + (row * P->tried + j) * width;
     for (whole e = P->rates_tried.begin[j]; e < P->rates_tried.begin[j + 1]; e++) {

@@ -135,8 +135,9 @@ def march(
         p: parameters of each row at each setting (S, N, H, np): the first is run; the derivatives are taken along its
             path at each, which is the truth where the settings differ in what has no effect
         pace: share of each row's dwell that took place (N, H); a stop before it, which is not read, keeps its length
-        wanted: the knobs by which derivatives are computed, none of any kind where it is None; those by other knobs
-            hold what their readings alone say
+        wanted: the columns by which derivatives are computed (knobs, pace, given sensors, tried knobs of one further
+            setting after the other), none of any kind where it is None; those by other knobs hold what their readings
+            alone say
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
     reads, shown = sum(map(len, phases.read)), len(plant.shown)
@@ -146,7 +147,8 @@ def march(
     found = {"y": np.empty((n, reads, shown))}
     found |= {name: np.zeros((runs, *size, reads, shown)) for name, size in sizes.items()}
     result = record(**{name: values if values.size else 0 for name, values in found.items()})
-    asked = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(wanted or ())))
+    columns = np.arange(len(plant.knobs) + 1 + given + (len(p) - 1) * len(plant.tried))
+    asked = _duty(phases, x0, p, pace, np.isin(columns, list(wanted or ())))
     places, run = [ctypes.byref(r) for r in (plant.record, asked, result)], library().march
     share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
     return Marched(**found)

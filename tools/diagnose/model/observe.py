@@ -69,6 +69,8 @@ class Observed(Measured):
         room = np.array([s.kind == "ambient" for s in self.given])
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
+        #: Form and parameters at size zero -> values and their slopes, of those that build on no value of the rig.
+        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray]] = {}
         self._phases = duty(campaign, self.rows, self.starts)
         at = self.entries
         #: Of each place that is read: its test, and its number among the reads of a run.
@@ -175,6 +177,16 @@ class _Look:
         base = {name: self._base(name) for name in formula.bases}
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
+    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values of a candidate at size zero, and their slopes by it (v, n); kept where they build on none."""
+        key = formula, t.tobytes()
+        if (known := self.o.neutral.get(key)) is None:
+            value, by_t, _ = self._physics(formula, t)
+            known = value, by_t[:, :, 0].copy()
+            if not formula.bases:
+                self.o.neutral[key] = known
+        return known
+
     def _act(self, formula: Formula, t: np.ndarray) -> None:
         value, by_t, by_base = self._physics(formula, t)
         slopes = []
@@ -194,8 +206,8 @@ class _Look:
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
         """The direction of a candidate's size, at its own shapes."""
-        value, by_t, _ = self._physics(formula, _none(t))
-        slopes, n_paths = by_t[:, :, 0], len(formula.paths)
+        value, slopes = self._neutral(formula, _none(t))
+        n_paths = len(formula.paths)
         setting = self._setting(dict(zip(formula.paths, value, strict=False)))
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
         self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
