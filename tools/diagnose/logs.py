@@ -149,11 +149,7 @@ def judged(
 
 
 def composed(
-    inputs: Inputs,
-    known: Fleet,
-    asked: Question,
-    logs: Logs,
-    progress: Progress = lambda stage, share: None,
+    inputs: Inputs, known: Fleet, asked: Question, logs: Logs, progress: Progress = lambda stage, share: None
 ) -> LogDiagnosis:
     """The whole answer; as `judged`."""
     told = judged(inputs, known, asked, logs, progress)

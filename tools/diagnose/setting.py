@@ -102,11 +102,7 @@ def setting(
 
 
 def ranges_of(
-    spec: Spec,
-    roles: Roles,
-    campaign: Campaign,
-    oils: Mapping[str, Mapping[str, float]],
-    point: Mapping[str, float],
+    spec: Spec, roles: Roles, campaign: Campaign, oils: Mapping[str, Mapping[str, float]], point: Mapping[str, float]
 ) -> Ranges:
     """Of a campaign on a rig as its file has it.
 

@@ -13,13 +13,13 @@ import numpy as np
 
 from ....model.errors import SolveError
 from ....scenarios.measured.table import Campaign
-from ..infer.foresee import Foreseen, foresee
 from ..infer.found import Found
 from ..infer.weigh import Options
 from ..model.observe import Observed
 from . import channels
 from .estimate import loose_variance
 from .findings import Gain
+from .foresee import Foreseen, foresee
 
 #: Draws of the bootstrap.
 DRAWS = 2000

@@ -162,11 +162,7 @@ class _Vector:
 
 
 def fitted(
-    problem: Problem,
-    acting: Sequence[Acting],
-    z: np.ndarray,
-    scales: np.ndarray | None = None,
-    steps: int = STEPS,
+    problem: Problem, acting: Sequence[Acting], z: np.ndarray, scales: np.ndarray | None = None, steps: int = STEPS
 ) -> Fit:
     """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 

@@ -260,11 +260,8 @@ class Problem:
 
         To first order at size zero; of a candidate with a size, the secant up to there.
         """
-        whole, parts, tried = (
-            np.append(z, 0.0),
-            [(a.formula, a.t) for a in acting],
-            [(c.formula, c.t) for c in candidates],
-        )
+        whole, parts = np.append(z, 0.0), [(a.formula, a.t) for a in acting]
+        tried = [(c.formula, c.t) for c in candidates]
         effects = self.data.tangents(whole, parts, tried)
         if far := [k for k, (_, t) in enumerate(tried) if t[0]]:
             without = self.data.shown_by(whole, parts)

@@ -57,6 +57,10 @@ class Table:
         names = [t.name if t.formula else "" for t in linear.terms]
         self.names, self.kinds = np.array(names), np.array([kind(name) for name in names])
         self.causes = self.names != ""
+        #: Numbers that stand for the words of each term: its name, its kind of instrument, its family (3, k).
+        self.codes = np.array(
+            [np.unique(words, return_inverse=True)[1] for words in (names, self.kinds, self.families)]
+        )
         gross = np.array([t.aside is not None for t in own])
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
@@ -83,16 +87,20 @@ class Table:
 
     def log_priors(self, members: Sequence[int]) -> np.ndarray:
         """Of a set with each of the terms (k,); -inf where they do not go together."""
-        causes, prior = self.named(members), self.linear.prior
-        like, own = np.isin(self.kinds, [kind(c) for c in causes if kind(c)]), prior.number(causes)
+        causes, prior, (name, same, family) = self.named(members), self.linear.prior, self.codes
+        like, own = _any(same, [k for k in members if self.kinds[k]]), prior.number(causes)
         number = own + prior.further(len(causes)) + like * np.log(SAME)
-        for cause in causes:  # by another term
-            number[self.names == cause] = own - prior.share[cause]
+        for k in (k for k in members if self.causes[k]):  # by another term
+            number[name == name[k]] = own - prior.share[str(self.names[k])]
         number = np.where(self.causes, number, own if causes else self.linear.critical)
         logs = self.shares + number - self._again(members)
-        taken = np.isin(self.families, self.families[list(members)])
-        taken |= self.causes & (len(causes) >= self.linear.most)
+        taken = _any(family, members) | self.causes & (len(causes) >= self.linear.most)
         return np.where(taken, -np.inf, logs + self.shares[list(members)].sum())
+
+
+def _any(codes: np.ndarray, members: Sequence[int]) -> np.ndarray:
+    """Which of some codes are those of any of the members (k,)."""
+    return np.asarray((codes == codes[list(members), None]).any(axis=0))
 
 
 class Whitened:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
-from .evidence import WIDTHS, split_error
+from .evidence import WIDTHS
 from .prior import GROSS, OUTSIDE, Prior
 from .problem import PACES, Acting, Aside, Look, Noise, Problem
 
@@ -231,11 +231,3 @@ class Linear:
     def aside(self, own: TermSet) -> frozenset[Aside]:
         """The gross readings of a set."""
         return frozenset(aside for k in own.members if (aside := self.terms[k].aside) is not None)
-
-    def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """What a set leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
-        passing = self.at(own.scatter.scales).passing
-        for k, width in own.scatter.beside:
-            if (part := self.terms[k].passing) is not None:
-                passing = passing + width**2 * part @ self.terms[k].columns.T
-        return split_error(self.covariance(own.scatter.scales, own.wide), passing, self.residual, kept, held)

@@ -33,6 +33,8 @@ WITHIN = 8.0
 #: Causes fitted alone where the rig is calibrated, and where the file has it: a large effect bends, and its cause may
 #: explain more than it promises to first order.
 ALONE = (4, 10)
+#: Share of what the best form of such a cause promises from which others of its forms are fitted, too.
+SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
 #: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
@@ -84,10 +86,7 @@ def _silent(stage: str, share: float) -> None:
 
 
 def weigh(
-    problem: Problem,
-    formulas: Sequence[Formula],
-    options: Options = USUAL,
-    progress: Progress = _silent,
+    problem: Problem, formulas: Sequence[Formula], options: Options = USUAL, progress: Progress = _silent
 ) -> Found:
     """All hypotheses that count, weighed.
 
@@ -137,6 +136,13 @@ class Weighing:
         self.drawn = null_draws(self.first, weights, self.options.seed)
         self.critical = float(np.quantile(self.drawn, 1 - self.options.alpha))
         self.p_any = float((1 + (self.drawn >= seen).sum()) / (1 + len(self.drawn)))
+
+    def glance(self) -> Found:
+        """The likeliest sets where nothing acts."""
+        self.ask_alarm()
+        self.keep_null()
+        self.fit_sets(self.search(self.null, self.first, "sets of causes", 0.3), self.null, 0.4)
+        return self._weighed()
 
     def run(self) -> Found:
         """Everything."""
@@ -215,7 +221,8 @@ class Weighing:
 
     def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
         """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        for start, logs in self._promising(look, set(), n, self.options.wanted):
+        share = SHARE if near is self.null else 1.0
+        for start, logs in self._promising(look, set(), n, self.options.wanted, share):
             self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
 
     def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
@@ -225,11 +232,11 @@ class Weighing:
             self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
 
     def _promising(
-        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
+        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
-        Causes that are taken, by name or family, are left out.
+        Causes that are taken, by name or family, are left out. Of each also the forms that promise a share of its best.
         """
         log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
@@ -239,7 +246,10 @@ class Weighing:
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
-            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
+            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
+            for i in own:
+                if i == k or value[i] > share * value[k] > 0:
+                    yield look.start(i), logs
 
     def _exchange(self) -> None:
         """Fits the leading set without each of its causes, and with what promises most in its place.
@@ -286,11 +296,11 @@ class Weighing:
         """The problem with some gross readings and scatters."""
         return self.whole.without(aside).beside(tuple(e.term for e in extras))
 
-    def fit_sets(self, found: Sequence[TermSet], near: Fit, share: float, most: int = FITTED) -> None:
+    def fit_sets(self, found: Sequence[TermSet], near: Fit, share: float) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
         combinations = self._combinations(found)
-        for done, own in enumerate(combinations[:most]):
-            self.progress("causes fitted together", share + 0.1 * done / most)
+        for done, own in enumerate(combinations[:FITTED]):
+            self.progress("causes fitted together", share + 0.1 * done / FITTED)
             if own.log < combinations[0].log - WITHIN:
                 break
             if own.key not in self.hypotheses:

@@ -69,12 +69,7 @@ def parameters(spec: Spec) -> dict[str, float]:
 
 
 def _of_form(
-    cause: Cause,
-    form: Form,
-    spec: Spec,
-    stated: Mapping[str, float],
-    sensors: Sequence[Sensor],
-    ranges: Ranges,
+    cause: Cause, form: Form, spec: Spec, stated: Mapping[str, float], sensors: Sequence[Sensor], ranges: Ranges
 ) -> Iterator[str]:
     """What is wrong with a form: it cannot be evaluated, or acts at size zero."""
     wide = spec.with_parts(form.parts, form.connections, EXTRA_PARTS)

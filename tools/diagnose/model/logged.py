@@ -33,13 +33,7 @@ class Logged(Observed):
     """
 
     def __init__(
-        self,
-        plant: Plant,
-        campaign: Campaign,
-        knobs: Sequence[Knob],
-        eta: np.ndarray,
-        H: np.ndarray,
-        root: np.ndarray,
+        self, plant: Plant, campaign: Campaign, knobs: Sequence[Knob], eta: np.ndarray, H: np.ndarray, root: np.ndarray
     ) -> None:
         names = [*(knob.name for knob in knobs), "day"]
         super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in names], {}, {})

@@ -119,12 +119,7 @@ class Marched:
 
 
 def march(
-    plant: Plant,
-    phases: Phases,
-    x0: np.ndarray,
-    p: np.ndarray,
-    pace: np.ndarray,
-    wanted: Collection[int] | None = None,
+    plant: Plant, phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wanted: Collection[int] | None = None
 ) -> Marched:
     """Run all phases.
 

@@ -212,9 +212,9 @@ class _Look:
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
         self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
         for i, name in enumerate(formula.given, start=n_paths):
-            self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
+            self.truth_slopes[name][self.d] = slopes[i]
         if formula.paced:
-            self.pace_slopes = total([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
+            self.pace_slopes[self.d] = self.pace * slopes[-1]
 
     def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
         """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.

@@ -54,24 +54,23 @@ def contradictions(findings: Findings) -> list[str]:
     total, quiet = sum(h.probability for h in findings.hypotheses), findings.verdict == "consistent"
     best = findings.answers[0].probability if findings.answers else 0.0
     known = {c.id for c in findings.causes}
-    named = findings.named - {UNEXPLAINED}
-    alarm = findings.test.p_any < findings.test.alpha
-    checks = {
-        f"the probabilities add up to {total:.3f}": total > 1 + 1e-6,
-        f"nothing is wrong, yet {phrases.p_value(findings.test.p_any)} is an alarm": quiet and alarm,
-        f"something is wrong, yet {phrases.p_value(findings.test.p_any)} is none": not quiet and not alarm,
-        f"nothing is wrong, with {phrases.percent(findings.nothing)}": quiet and findings.nothing < 0.5,
-        f"something is wrong, yet nothing has {phrases.percent(findings.nothing)}": not quiet
-        and findings.nothing > 0.5,
-        "one answer explains it, and there are none or several": findings.verdict == "explained"
-        and len(findings.answers) != 1,
-        f"one answer explains it with {phrases.percent(best)}": findings.verdict == "explained" and best < 0.9,
-        "nothing is wrong, and there is an answer": quiet and bool(findings.answers),
-        "nothing and something both have more than half": findings.nothing > 0.5
-        and max([best, *(c.probability for c in findings.causes)]) > 0.5,
-        f"{', '.join(sorted(named - known))} is named and not listed": bool(named - known),
-    }
-    return [text for text, wrong in checks.items() if wrong]
+    lost = findings.named - {UNEXPLAINED} - known
+    alarm, explained = findings.test.p_any < findings.test.alpha, findings.verdict == "explained"
+    p, nothing = phrases.p_value(findings.test.p_any), phrases.percent(findings.nothing)
+    most = max([best, *(c.probability for c in findings.causes)])
+    checks = [
+        (total > 1 + 1e-6, f"the probabilities add up to {total:.3f}"),
+        (quiet and alarm, f"nothing is wrong, yet {p} is an alarm"),
+        (not quiet and not alarm, f"something is wrong, yet {p} is none"),
+        (quiet and findings.nothing < 0.5, f"nothing is wrong, with {nothing}"),
+        (not quiet and findings.nothing > 0.5, f"something is wrong, yet nothing has {nothing}"),
+        (explained and len(findings.answers) != 1, "one answer explains it, and there are none or several"),
+        (explained and best < 0.9, f"one answer explains it with {phrases.percent(best)}"),
+        (quiet and bool(findings.answers), "nothing is wrong, and there is an answer"),
+        (findings.nothing > 0.5 and most > 0.5, "nothing and something both have more than half"),
+        (bool(lost), f"{', '.join(sorted(lost))} is named and not listed"),
+    ]
+    return [text for wrong, text in checks if wrong]
 
 
 def _verdict(findings: Findings) -> str:
