@@ -164,7 +164,7 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
     problem = made.problem
     look = problem.look(np.zeros(problem.nz))
     noise = problem.noise(look)
-    candidates, _ = samples([f for f in made.formulas if not f.form.spread], changes(problem))
+    candidates, _ = samples(tuple(f for f in made.formulas if not f.form.spread), changes(problem))
     effects = problem.tangents(look.z, (), candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     V = noise.covariance + look.jacobian @ look.jacobian.T

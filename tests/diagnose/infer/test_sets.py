@@ -122,6 +122,26 @@ def test_a_walk_beside_its_own_scatter() -> None:
     assert abs(best.scatter.scales[0]) < 0.5
 
 
+def test_one_more_scatter_counts_as_where_it_whitens() -> None:
+    """It is weighed by what a set and the scatters beside it leave of products, never whitened anew."""
+    walk, pairs, halves = np.tril(np.ones((M, M)))[:, ::4], np.kron(np.eye(10), np.ones((4, 1))), np.eye(M)[:, :10]
+    problem = linear(noise(4), [Term(f"s{k}", f"s{k}", -3.0, C, SPREADS) for k, C in enumerate((walk, pairs, halves))])
+    table = sets.Table(problem)
+    white = sets.Whitened(table, Scatter((0.1,), ((CAUSES, 0.5),)), sets.Whitened(table, Scatter((0.1,))))
+    own = white.scored([3, 7], [0.8, 1.6])
+
+    def density(scatter: Scatter) -> float:
+        V = problem.covariance((0.1,), (*own.sized, *scatter.beside))
+        return float(multivariate_normal.logpdf(problem.residual, np.zeros(M), V))
+
+    others = [item for item in white.scatters(own, -np.inf) if len(item[1].beside) == 2 and item[2] == own]
+    assert {k for _, scatter, _ in others for k, _ in scatter.beside} == {CAUSES, CAUSES + 1, CAUSES + 2}
+    for log, scatter, _ in others:
+        terms = sorted((3, 7, *(k for k, _ in scatter.beside)))
+        prior = table.log_prior(terms) - table.log_prior(own.terms)
+        assert log - own.log == pytest.approx(density(scatter) - density(own.scatter) + prior, abs=1e-9)
+
+
 def test_no_better_set_of_two_is_missed() -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(9) + 1.0 * effects[:, 3] + 1.0 * effects[:, 6]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -82,7 +83,8 @@ class Screen:
         return Start(acting, acting.t[0] * self.effects[:, k])
 
 
-def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acting, ...], np.ndarray]:
+@lru_cache(maxsize=1)  # they are the same for all folds
+def samples(formulas: tuple[Formula, ...], orders: tuple[float, ...]) -> tuple[tuple[Acting, ...], np.ndarray]:
     """Candidates spread over the prior of each formula's shapes, the middle first, and their owners.
 
     Args:
@@ -113,12 +115,12 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
     return tuple(found), np.array(owner)
 
 
-def changes(problem: Problem) -> np.ndarray:
+def changes(problem: Problem) -> tuple[float, ...]:
     """Places in the running order between two tests, of many tests some."""
     order = np.unique(problem.data.campaign.progress)
     found = (order[1:] + order[:-1]) / 2
     kept = np.linspace(0, len(found) - 1, min(len(found), PLACES)).astype(int)
-    return np.asarray(found[kept])
+    return tuple(found[kept].tolist())
 
 
 def spread(n: int, d: int) -> np.ndarray:
@@ -139,7 +141,7 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
         linear: whitening by all that is uncertain there, and the residual in it
         formulas: forms of causes
     """
-    candidates, owner = samples(formulas, changes(problem))
+    candidates, owner = samples(tuple(formulas), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     white, e = linear

@@ -138,7 +138,7 @@ class Weighing:
         self.p_any = float((1 + (self.drawn >= seen).sum()) / (1 + len(self.drawn)))
 
     def glance(self) -> Found:
-        """The likeliest sets where nothing acts."""
+        """The first linearisation alone: the likeliest sets where nothing acts, fitted."""
         self.ask_alarm()
         self.keep_null()
         self.fit_sets(self.search(self.null, self.first, "sets of causes", 0.3), self.null, 0.4)
