@@ -64,17 +64,22 @@ class Request:
 
     def problems(self) -> list[str]:
         """What is wrong with the options, and files that do not exist."""
-        rate, known = f"--alpha {self.alpha:g} is no rate of false alarms.", "needs the readings of the same tests."
-        alone, unknown = self.data is None, self.reference is None
-        checks = [
-            (alone and not self.logs, "no data are given. Name a table of readings, or logs with --logs FILE."),
-            (not 0.0 < self.alpha < 1.0, f"{rate} Give a number between 0 and 1, such as 0.03."),
-            (not 1 <= self.causes <= MOST, f"--causes {self.causes}: how many may act together. Give 1 to {MOST}."),
-            (self.seed < 0, f"--seed {self.seed} is below zero. Give 0 or more."),
-            (alone and self.series is not None, f"--series {known} Name their table, too."),
-            (unknown and self.reference_series is not None, f"--reference-series {known} Give --reference, too."),
-        ]
-        return [text for wrong, text in checks if wrong] + _lost(self.files())
+        found = []
+        if self.data is None and not self.logs:
+            found.append("no data are given. Name a table of readings, or logs with --logs FILE.")
+        if not 0.0 < self.alpha < 1.0:
+            found.append(
+                f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.03."
+            )
+        if not 1 <= self.causes <= MOST:
+            found.append(f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}.")
+        if self.seed < 0:
+            found.append(f"--seed {self.seed} is below zero. Give 0 or more.")
+        if self.series is not None and self.data is None:
+            found.append("--series needs the readings of the same tests. Name their table, too.")
+        if self.reference_series is not None and self.reference is None:
+            found.append("--reference-series needs the readings of the same tests. Give --reference, too.")
+        return found + _lost(self.files())
 
 
 @dataclass(frozen=True)

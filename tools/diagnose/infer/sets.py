@@ -233,8 +233,7 @@ class Whitened:
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
                 yield from near._further(base, least)
-        linear = self.table.linear
-        columns = linear.sized(own.wide)
+        linear, columns = table.linear, table.linear.sized(own.wide)
         found = linear.at(scales).fitted(linear.residual, linear.known + columns @ columns.T).scales
         if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
@@ -242,11 +241,10 @@ class Whitened:
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Of scatters that the table has together: products of whitened columns (k, c, c), with the residual (k, c)."""
-        groups = range(len(self.table.scatters))
         if self.plain is not None:
             turned, b, _ = self.plain.beside(self.scatter.beside)
             back = self.plain.white.turned(turned).T
-            return [self.plain._left(group, back, b) for group in groups]
+            return [self.plain._left(group, back, b) for group in range(len(self.table.scatters))]
         found = []
         for numbers, _, columns in self.table.scatters:
             C = np.ascontiguousarray(self.white(columns).reshape(len(self.e), len(numbers), -1).swapaxes(0, 1))
@@ -308,7 +306,8 @@ def search(
             continue
         seen.add(scatter)
         progress(len(seen) / scatters)
-        white = Whitened(table, scatter, plain(scatter.scales))
+        alone = plain(scatter.scales)
+        white = Whitened(table, scatter, alone) if scatter.beside else alone
         sets = white.search(starts, LOOKS[bool(starts)])
         for s in sets:
             if s.terms not in found or found[s.terms].log < s.log:

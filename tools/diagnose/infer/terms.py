@@ -1,4 +1,4 @@
-"""Everything that may be wrong, to first order: one list of terms, each a size or a scatter with its columns; sets."""
+"""Everything that may be wrong, to first order: one list of terms, the linear problem they stand in, sets of them."""
 
 from __future__ import annotations
 

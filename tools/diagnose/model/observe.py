@@ -178,7 +178,7 @@ class _Look:
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
     def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values of a candidate at size zero, and their slopes by it (v, n); kept where they build on none."""
+        """Values of a candidate at size zero and their slopes by it (v, n), kept if they follow no value of the rig."""
         key = formula, t.tobytes()
         if (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
