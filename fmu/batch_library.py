@@ -40,6 +40,8 @@ _SIGNATURES = {
 #: Vector instructions beyond those every processor has -> numbers of a vector, the best first. They change how
 #: fast a batch is, not one bit of it.
 WIDER = {"avx512f": 8, "avx2": 4}
+#: Numbers of a vector without them, as wrapper/lanes.h has it.
+LANES = 4
 #: Rows of a batch side by side with any of them: two vectors at once do not wait for each other.
 BESIDE = 8
 #: So few rows leave most of those lanes empty: side by side in a vector of two they take half the time.

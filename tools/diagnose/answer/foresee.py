@@ -9,7 +9,9 @@ import numpy as np
 
 from ..infer.evidence import split_error
 from ..infer.fit import Fit, prior_precision
+from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
+from ..infer.terms import remainders, spreads
 from ..infer.weigh import Options, Weighing
 from ..model.formula import Formula
 from .decide import temper
@@ -49,19 +51,39 @@ def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, opt
     Raises:
         SolveError: the model cannot be run without a cause
     """
-    without = problem.without(problem.aside | {Aside(int(i)) for i in held})
-    found = temper(Weighing(without, formulas, options).glance())
-    kept = np.setdiff1d(np.arange(found.problem.m), found.problem.entries_aside)
-    counted = [(h.fit, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
-    errors = np.array([left(found.problem, fit, kept, held) for fit, _ in counted])
+    kept = np.setdiff1d(np.arange(problem.m), held)
+    found = temper(Weighing(problem.only(kept), formulas, options).glance())
+    aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
+    left = _Left(problem.without(aside), found, held)
+    counted = [(h, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
+    errors = np.array([left.by(h.fit, h.extras) for h, _ in counted])
     after = np.average(errors, axis=0, weights=[p for _, p in counted])
-    before, leading = (left(found.problem, fit, kept, held) for fit in (found.null, found.hypotheses[0].fit))
-    return Foreseen(held, before, after, leading, found.hypotheses[0].causes)
+    leader = found.hypotheses[0]
+    return Foreseen(held, left.by(found.null, ()), after, left.by(leader.fit, leader.extras), leader.causes)
 
 
-def left(problem: Problem, fit: Fit, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """What a fit leaves of held entries: by what lasts, and by what passes with a test or mounting, too (2, k)."""
-    look = fit.look
-    S = fit.noise.covariance + look.jacobian / prior_precision(problem, look.acting) @ look.jacobian.T
-    r = problem.measured - look.shown + look.jacobian @ look.x
-    return split_error(S, fit.noise.passing, r, kept, held)
+class _Left:
+    """What fits without some entries leave of them.
+
+    Args:
+        problem: with these entries
+        found: the search without them
+        held: their numbers (k,)
+    """
+
+    def __init__(self, problem: Problem, found: Found, held: np.ndarray) -> None:
+        self.problem, self.held = problem, held
+        self.kept = np.setdiff1d(np.arange(problem.m), [*held, *problem.entries_aside])
+        scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
+        spread = [f for f in found.formulas if f in scattering]
+        look = problem.look(found.null.look.z)
+        self.terms = {t.label: t for t in (*spreads(problem, look, spread, found.prior), *remainders(problem))}
+
+    def by(self, fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
+        """By what lasts, and by what passes with a test or mounting, too (2, k)."""
+        own = [Extra(self.terms[e.of.label], e.size) for e in extras if e.of.label in self.terms]
+        look = self.problem.look(fit.look.z, fit.look.acting)
+        noise = self.problem.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
+        S = noise.covariance + look.jacobian / prior_precision(self.problem, look.acting) @ look.jacobian.T
+        r = self.problem.measured - look.shown + look.jacobian @ look.x
+        return split_error(S, noise.passing, r, self.kept, self.held)

@@ -184,6 +184,14 @@ class Problem:
         """The same with some readings set aside."""
         return self._with(aside=aside)
 
+    def only(self, kept: np.ndarray) -> Problem:
+        """The same with some of its compared readings (k,), all that are set aside among them, and their new numbers."""
+        begins = np.cumsum([0, *(o.m for o in self.campaigns)])
+        parts = [kept[(kept >= a) & (kept < b)] - a for a, b in zip(begins[:-1], begins[1:], strict=True)]
+        aside = (a if a.sensor else Aside(int(np.searchsorted(kept, a.number))) for a in self.aside)
+        own = [o.only(part) for o, part in zip(self.campaigns, parts, strict=True)]
+        return Problem(own, self.day_sd, frozenset(aside))
+
     def beside(self, more: tuple[Term, ...]) -> Self:
         """The same with further scatter."""
         return self._with(more=more)

@@ -7,7 +7,9 @@ a variance of every entry of its own. Its scale is what the card states; where i
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -43,6 +45,11 @@ class Entries:
     place_row: np.ndarray
     step: np.ndarray
     share: np.ndarray
+
+    def only(self, kept: np.ndarray) -> Entries:
+        """Some of the entries (k,)."""
+        own = (self.kind, self.sensor, self.row, self.at, self.measured, self.repeat)
+        return Entries(*(values[kept] for values in own), self.place_row, self.step, self.share)
 
     def picked(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
         """Values (m, ...) from those of sensors at places (sensors, p, ...) and those of dwells (n, ...)."""
@@ -172,10 +179,19 @@ class Measured:
         self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
         self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
         self.given, self.read = campaign.given, campaign.read
-        self.entries = Entries.of(campaign)
-        #: Channel and row of each of the m entries, and what was measured.
-        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
+        self._hold(Entries.of(campaign))
         self.features = self._features()
+
+    def _hold(self, entries: Entries) -> None:
+        self.entries = entries
+        #: Channel and row of each of the m entries, and what was measured.
+        self.kind, self.row, self.measured = entries.kind, entries.row, entries.measured
+
+    def only(self, kept: np.ndarray) -> Self:
+        """The same with some of its entries (k,)."""
+        found = copy(self)
+        found._hold(self.entries.only(kept))
+        return found
 
     @property
     def m(self) -> int:

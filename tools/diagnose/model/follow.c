@@ -250,7 +250,8 @@ static void log_placed(Follow *F, Room *room) {
   Runs *R = &F->runs;
   const Plant *P = R->plant;
   const whole nx = F->nx, nw = F->nw, m = F->reads, k = F->logs->k, pivots = nw * LANES * sizeof(whole);
-  R->p = vectors(room, P->np), R->u = vectors(room, P->nu), R->r = vectors(room, nw), R->left = vectors(room, nw);
+  R->p = vectors(room, P->np), R->c = vectors(room, P->nc), R->u = vectors(room, P->nu);
+  R->r = vectors(room, nw), R->left = vectors(room, nw);
   R->sparse = vectors(room, P->most), R->direct = vectors(room, P->most);
   R->LU = vectors(room, nw * nw), R->pivot = bytes(room, pivots);
   F->factor = vectors(room, P->given), F->shift = vectors(room, P->given), F->offset = vectors(room, m);
@@ -273,8 +274,7 @@ static void log_begun(Follow *F, whole from, whole to) {
   Runs *R = &F->runs;
   const Plant *P = R->plant;
   const Logs *D = F->logs;
-  EACH R->run[l] = from + l < to ? from + l : to - 1, R->fine[l] = from + l < to;
-  across(R->p, D->p, from, to, P->np), across(F->dp, D->dp, from, to, P->knobs * D->k);
+  begun(R, D->p, from, to), across(F->dp, D->dp, from, to, P->knobs * D->k);
   across(F->factor, D->factor, from, to, P->given), across(F->shift, D->shift, from, to, P->given);
   across(F->offset, D->offset, from, to, F->reads), across(F->w[0], D->x0, from, to, F->nx);
   for (whole i = 0; i < P->nu; i++) R->u[i] = lanes_all(D->u[i]);
@@ -288,7 +288,7 @@ static void log_begun(Follow *F, whole from, whole to) {
 __attribute__((visibility("default"))) int follow(const Plant *plant, const Logs *logs, const Told *told, whole from,
                                                   whole to) {
   const whole row = 0;
-  const Duty one = {.H = 1, .row = &row};
+  const Duty one = {.S = 1, .H = 1, .row = &row};
   Follow F = {.runs = {.plant = plant, .duty = &one}, .logs = logs, .nx = plant->nx, .nw = plant->nw,
               .reads = plant->shown, .columns = logs->k + plant->nx};
   Room room = {0};

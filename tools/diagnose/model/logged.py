@@ -41,10 +41,9 @@ class Logged(Observed):
         told = [_told(*said, np.array([k.sd for k in knobs])) for said in zip(eta, H, strict=True)]
         #: Slopes of the entries by the knobs in their spans (m, k).
         self.by = np.concatenate([B for _, B in told])
-        self.row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told])
-        self.kind, self.measured = np.full(len(self.row), -1), np.concatenate([y for y, _ in told])
-        none, ones = np.zeros(len(self.row), dtype=int), np.ones(len(self.row))
-        self.entries = Entries(self.kind, none, self.row, self.row, self.measured, ones, self.row, none, ones)
+        row, measured = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told]), np.concatenate([y for y, _ in told])
+        none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
+        self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 
     def moves(self, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
         """How far causes move the knobs in each span (n, k)."""

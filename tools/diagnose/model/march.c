@@ -6,16 +6,17 @@
    all that the plant shows. The text of lanes.h stands above this one. */
 
 typedef long long whole;
-/* Two results by (w, u, p); the second may have no entries. */
-typedef void (*Formula)(const lanes *, const lanes *, const lanes *, lanes *, lanes *);
+/* Two results by (w, u, p, c); the second may have no entries. c are constants that follow from p. */
+typedef void (*Formula)(const lanes *, const lanes *, const lanes *, const lanes *, lanes *, lanes *);
 
 /* Columns of a sparse matrix: where each begins, and the row of each entry. */
 typedef struct { const whole *begin, *row; } Pattern;
 
-/* A rig: sizes, compiled formulas of (w, u, p), patterns of their matrices. */
+/* A rig: sizes, compiled formulas, patterns of their matrices. */
 typedef struct {
   whole nx, nw, nu, np, knobs, given, shown, tried, most;
-  Formula rates, slopes, readings, reading_slopes, trials;
+  whole nc;
+  Formula constants, rates, slopes, readings, reading_slopes, trials;
   Pattern rates_w, rates_by, shown_w, shown_by, rates_tried, shown_tried;
   const double *scale, *guess, *thermal;
 } Plant;
@@ -68,7 +69,7 @@ typedef struct {
   const Duty *duty;
   whole run[LANES], phase, stages;
   int fine[LANES], on[LANES];        /* has not failed; takes part in the step */
-  lanes *p, *u, *sparse, *direct, *r, *x, *base, *d;
+  lanes *p, *c, *u, *sparse, *direct, *r, *x, *base, *d;
   lanes *w, *last, *trial;           /* unknowns now, those of the stage before, those tried */
   double now, before;                /* shares of the phase at w and last; equal where the last is none */
   lanes *left, *LU;
@@ -94,8 +95,8 @@ static void inputs(Runs *R, double share) {
 }
 
 static void call(Runs *R, Formula formula, whole setting, const lanes *w, lanes *first, lanes *second) {
-  const Duty *D = R->duty;
-  formula(w, R->u, R->p + (setting * D->H + D->row[R->phase]) * R->plant->np, first, second);
+  const whole row = setting * R->duty->H + R->duty->row[R->phase];
+  formula(w, R->u, R->p + row * R->plant->np, R->c + row * R->plant->nc, first, second);
 }
 
 /* Exchanges row k of b (n, width) with the pivot's in the lanes where that is another one. */
@@ -423,7 +424,7 @@ static void placed(Runs *R, Room *room, whole stages) {
   const Plant *P = R->plant;
   const Duty *D = R->duty;
   const whole nw = P->nw, nx = P->nx, width = D->R * P->shown, pivots = nw * LANES * sizeof(whole);
-  R->p = vectors(room, D->S * D->H * P->np), R->u = vectors(room, P->nu);
+  R->p = vectors(room, D->S * D->H * P->np), R->c = vectors(room, D->S * D->H * P->nc), R->u = vectors(room, P->nu);
   R->sparse = vectors(room, P->most), R->direct = vectors(room, P->most), R->r = vectors(room, nw);
   R->x = vectors(room, nx), R->base = vectors(room, nx), R->d = vectors(room, STAGES * nx);
   R->w = vectors(room, nw), R->last = vectors(room, nw), R->trial = vectors(room, nw);
@@ -449,12 +450,14 @@ static void across(lanes *own, const double *rows, whole from, whole n, whole wi
   EACH for (whole i = 0; i < width; i++) own[i][l] = rows[(from + l < n ? from + l : n - 1) * width + i];
 }
 
-/* Runs from a number on, their parameters at hand. */
-static void begun(Runs *R, whole from, whole to) {
+/* Runs from a number on with S x H rows of parameters (S, n, H, np), and the constants that follow from them. */
+static void begun(Runs *R, const double *p, whole from, whole to) {
+  const Plant *P = R->plant;
   const Duty *D = R->duty;
-  const whole size = D->H * R->plant->np;
+  const whole size = D->H * P->np;
   EACH R->run[l] = from + l < to ? from + l : to - 1, R->fine[l] = from + l < to;
-  for (whole s = 0; s < D->S; s++) across(R->p + s * size, D->p + s * D->n * size, from, to, size);
+  for (whole s = 0; s < D->S; s++) across(R->p + s * size, p + s * D->n * size, from, to, size);
+  for (whole k = 0; k < D->S * D->H; k++) P->constants(0, 0, R->p + k * P->np, 0, R->c + k * P->nc, 0);
 }
 
 /* The runs from the first to before the second number; 0 where memory runs out. */
@@ -472,7 +475,7 @@ __attribute__((visibility("default"))) int march(const Plant *plant, const Duty 
   if (!room.begin) return 0;
   placed(&R, &room, stages);
   for (whole first = from; first < to; first += LANES) {
-    begun(&R, first, to);
+    begun(&R, duty->p, first, to);
     forward(&R, found->y, kept);
     for (whole k = 0; k < R.stages; k++) EACH R.stage[k].on[l] &= R.fine[l];
     if (kept && any(R.fine)) backward(&R, found);

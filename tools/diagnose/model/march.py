@@ -14,15 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from ....fmu.batch_library import share_rows
+from ....fmu.batch_library import LANES, WIDER, instructions, share_rows
 from ....scenarios.measured.table import PLACES, Campaign
 from .plant import Plant, library, record
 
-#: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
-DWELL = (np.arange(1, 8) / 7) ** 1.2
+#: Shares of a dwell where steps end: of 18 machines, 40 steps move no reading by more than .055 of its deviations.
+DWELL = (np.arange(1, 6) / 5) ** 1.2
 #: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
 LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
 READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())
+#: The same of a stop, and of the time to a steady state [s].
 STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)
 #: A kind of sensor that reads zero where the machine stands.
@@ -145,7 +146,8 @@ def march(
     columns = np.arange(len(plant.knobs) + 1 + given + (len(p) - 1) * len(plant.tried))
     asked = _duty(phases, x0, p, pace, np.isin(columns, list(wanted or ())))
     places, run = [ctypes.byref(r) for r in (plant.record, asked, result)], library().march
-    share_rows(lambda begin, end: int(run(*places, begin, end)), n, n, 0 if n > 1 else 1)
+    side = WIDER.get(instructions(), LANES)  # whole vectors are shared out: none is left half empty
+    share_rows(lambda begin, end: int(run(*places, side * begin, min(side * end, n))), -(-n // side), n, 0)
     return Marched(**found)
 
 

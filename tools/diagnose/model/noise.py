@@ -275,7 +275,9 @@ def smoothed(o: Measured) -> np.ndarray:
     for i in np.flatnonzero(along(o)):
         place.setdefault((o.read[o.entries.sensor[i]].name, int(o.row[i])), []).append(int(i))
     for course in o.campaign.series.courses if o.campaign.series else ():
-        own, known = place.get((course.sensor, course.row), []), np.isfinite(course.values)
+        own, known = place.get((course.sensor, course.row)), np.isfinite(course.values)
+        if own is None:
+            continue  # it is left out
         sd = o.campaign.sensor(course.sensor).repeat_sd
         found[np.ix_(own, own)] = ALLOWED * sd**2 * course.scatter[np.ix_(known, known)]
     return found

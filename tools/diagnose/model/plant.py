@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ import numpy as np
 
 from ....fmu import emit
 from ....fmu.batch_library import address, instructions, load, widen
+from ....fmu.equations import hoist
 from ....model.core.flat import FlatModel
 from ....model.core.flatten import flatten
 from ....model.machines.spec import PartSpec, Spec, assemble
@@ -85,7 +87,7 @@ class Plant:
         }
         self.record = self._record(*_compiled([w, flat.u, flat.p], results))
 
-    def _record(self, functions: Mapping[str, int], patterns_of: Sequence[Sequence[Pattern]]) -> Any:
+    def _record(self, sizes: Mapping[str, int], patterns_of: Sequence[Sequence[Pattern]]) -> Any:
         """The plant as the march through its runs knows it."""
         unknowns = (*self.flat.states, *self.flat.algebraic)
         (_, rates), (slopes,), (_,), shown, trials = patterns_of
@@ -100,7 +102,7 @@ class Plant:
             shown=len(self.shown),
             tried=len(self.tried),
             most=max(len(entries) for entries in patterns),
-            **functions,
+            **sizes,
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
             scale=self.scale,
             guess=self.flat.starts("algebraic"),
@@ -152,24 +154,27 @@ def _compiled(
     """Functions of the same symbolic columns in one library; their results hold the entries of sparse matrices only.
 
     Args:
-        arguments: symbolic columns
+        arguments: symbolic columns, the parameters last
         results: name of a function -> one or two expressions
 
     Returns:
-        where each function lies in memory; of each its results' patterns
+        how many constants follow from the parameters, and where each function lies in memory, theirs among them; of
+        each its results' patterns
 
     Raises:
         FmuError: the compiler fails
     """
-    names, texts = [f"i{k}" for k in range(len(arguments))], []
-    for name, found in results.items():
-        outputs = [ca.SX(r).nz[:] for r in found] + [ca.SX(0, 1)] * (2 - len(found))
-        function = ca.Function(name, list(arguments), outputs, names, ["first", "second"], {"cse": True})
+    cut, symbols, constants = hoist([ca.SX(r).nz[:] for found in results.values() for r in found], arguments[-1])
+    every, names, texts, rest = {"constants": [constants]}, ["w", "u", "p", "c"], [], iter(cut)
+    every |= {name: list(islice(rest, len(found))) for name, found in results.items()}
+    for name, outputs in every.items():
+        outputs += [ca.SX(0, 1)] * (2 - len(outputs))
+        function = ca.Function(name, [*arguments, symbols], outputs, names, ["first", "second"], {"cse": True})
         texts.append(emit.function(function, "lanes_", "lanes"))
         texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
     made = _loaded("\n".join(texts))
-    places = {name: ctypes.c_void_p.in_dll(made, f"place_{name}").value or 0 for name in results}
-    return places, [[_pattern(r) for r in found] for found in results.values()]
+    places = {name: ctypes.c_void_p.in_dll(made, f"place_{name}").value or 0 for name in every}
+    return {"nc": symbols.numel(), **places}, [[_pattern(r) for r in found] for found in results.values()]
 
 
 @cache
