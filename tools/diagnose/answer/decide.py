@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from ..infer.evidence import White
 from ..infer.found import Found, Hypothesis, Member
@@ -232,4 +232,4 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
     fitted = d > FREE
     e = white(r[kept])
     e = e - Q[:, fitted] @ (Q[:, fitted].T @ e)
-    return float(chi2.sf(e @ e, max(len(e) - int(fitted.sum()), 1)))
+    return float(chdtrc(max(len(e) - int(fitted.sum()), 1), e @ e))

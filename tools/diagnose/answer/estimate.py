@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
@@ -256,7 +256,7 @@ def find_detectable(found: Found) -> dict[str, float]:
     below, above = np.zeros(len(q)), np.where(sign > 0, high, -low)
 
     def seen(size: np.ndarray) -> np.ndarray:
-        s = sign * (size * q - norm.ppf(POWER) * np.sqrt(q))
+        s = sign * (size * q - ndtri(POWER) * np.sqrt(q))
         return np.asarray(log_bayes_factors(s, q, low, high) > needed)
 
     known = seen(above)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from ....model.core.faults import name_all
 from ....scenarios.measured.table import Campaign, Sensor
@@ -127,7 +127,7 @@ def views(found: Found) -> tuple[View, ...]:
             View(
                 channel=s.name,
                 asks=_asks(s, o.read),
-                p=float(chi2.sf(left @ left, len(left))),
+                p=float(chdtrc(len(left), left @ left)),
                 nothing=float(np.exp(found.critical - total)),
                 causes=tuple(View.Alone(id=id, probability=p) for id, p in ranked),
                 unit=channels.unit_of_difference(s),

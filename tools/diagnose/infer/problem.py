@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -185,11 +186,10 @@ class Problem:
         return self._with(aside=aside)
 
     def only(self, kept: np.ndarray) -> Problem:
-        """The same with some of its compared readings (k,), all that are set aside among them, and their new numbers."""
-        begins = np.cumsum([0, *(o.m for o in self.campaigns)])
-        parts = [kept[(kept >= a) & (kept < b)] - a for a, b in zip(begins[:-1], begins[1:], strict=True)]
+        """The same with some of its compared readings (k,), renumbered; all that are set aside are among them."""
+        ends = pairwise(np.cumsum([0, *(o.m for o in self.campaigns)]))
+        own = [o.only(kept[(kept >= a) & (kept < b)] - a) for o, (a, b) in zip(self.campaigns, ends, strict=True)]
         aside = (a if a.sensor else Aside(int(np.searchsorted(kept, a.number))) for a in self.aside)
-        own = [o.only(part) for o, part in zip(self.campaigns, parts, strict=True)]
         return Problem(own, self.day_sd, frozenset(aside))
 
     def beside(self, more: tuple[Term, ...]) -> Self:

@@ -60,6 +60,21 @@ class Screen:
     log_bf: np.ndarray
     sizes: np.ndarray
 
+    @staticmethod
+    def of(
+        candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, linear: tuple[White, np.ndarray]
+    ) -> Screen:
+        """By whitening and the residual in it."""
+        white, e = linear
+        g, (low, high) = white(effects), limits(candidates)
+        s, q = g.T @ e, (g**2).sum(axis=0)
+        log_bf = log_bayes_factors(s, q, low, high)
+        return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), low, high))
+
+    def beside(self, linear: tuple[White, np.ndarray]) -> Screen:
+        """What the same effects would explain beside another hypothesis."""
+        return Screen.of(self.candidates, self.owner, self.effects, linear)
+
     @property
     def weights(self) -> np.ndarray:
         """Log share of each candidate in its cause (k,)."""
@@ -144,11 +159,7 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
     candidates, owner = samples(tuple(formulas), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    white, e = linear
-    g, (low, high) = white(effects), limits(candidates)
-    s, q = g.T @ e, (g**2).sum(axis=0)
-    log_bf = log_bayes_factors(s, q, low, high)
-    return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), low, high))
+    return Screen.of(candidates, owner, effects, linear)
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:

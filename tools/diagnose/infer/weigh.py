@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from ....model.errors import SolveError
 from ..model.formula import Formula
@@ -259,19 +259,20 @@ class Weighing:
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         leader, best = ranked[0]
-        acting = best.fit.look.acting
+        acting, gone = best.fit.look.acting, list[tuple[Key, Hypothesis, Acting | Extra | None]]()
         if leader not in self.exchanged and len(best.causes) > 1:
-            gone: tuple[Acting | Extra, ...] = (*acting, *best.extras)
-            for one in gone:
-                self._join_all(leader, best, one)
+            gone += [*((leader, best, one) for one in acting), *((leader, best, one) for one in best.extras)]
         self.exchanged.add(leader)
         for n in range(1, len(acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
             if key not in self.exchanged:
                 self.exchanged.add(key)
-                self._join_all(key, fewer)
+                gone.append((key, fewer, None))
+        look = self.screened(best.fit, self.problem) if gone else self.first  # what else acts hardly changes effects
+        for key, known, one in gone:
+            self._join_all(look, key, known, one)
 
-    def _join_all(self, key: Key, known: Hypothesis, gone: Acting | Extra | None = None) -> None:
+    def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
         fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
@@ -279,7 +280,7 @@ class Weighing:
             forms = {b.id: known.forms.get(b.id, {}) for b in rest}
             near = self._fit_exactly(problem, rest, fit.look.z, fit.noise.scales, extras, forms) if gone else fit
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
-            for start, logs in self._promising(self.screened(near, problem), taken, EXCHANGED):
+            for start, logs in self._promising(look.beside(near.linear(problem)), taken, EXCHANGED):
                 self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
 
     def _fit_alike(self) -> None:
@@ -389,6 +390,6 @@ class Weighing:
             self.p_any,
             self.critical,
             self.drawn,
-            float(chi2.sf(e @ e, self.problem.m - len(self.problem.aside))),
+            float(chdtrc(self.problem.m - len(self.problem.aside), e @ e)),
             self.prior,
         )

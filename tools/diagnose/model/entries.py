@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -48,8 +48,8 @@ class Entries:
 
     def only(self, kept: np.ndarray) -> Entries:
         """Some of the entries (k,)."""
-        own = (self.kind, self.sensor, self.row, self.at, self.measured, self.repeat)
-        return Entries(*(values[kept] for values in own), self.place_row, self.step, self.share)
+        own = ("kind", "sensor", "row", "at", "measured", "repeat")
+        return replace(self, **{name: getattr(self, name)[kept] for name in own})
 
     def picked(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
         """Values (m, ...) from those of sensors at places (sensors, p, ...) and those of dwells (n, ...)."""

@@ -41,7 +41,8 @@ class Logged(Observed):
         told = [_told(*said, np.array([k.sd for k in knobs])) for said in zip(eta, H, strict=True)]
         #: Slopes of the entries by the knobs in their spans (m, k).
         self.by = np.concatenate([B for _, B in told])
-        row, measured = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told]), np.concatenate([y for y, _ in told])
+        row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told])
+        measured = np.concatenate([y for y, _ in told])
         none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
         self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from ....scenarios.measured.table import PLACES, Campaign
 from .plant import Plant, library, record
 
 #: Shares of a dwell where steps end: of 18 machines, 40 steps move no reading by more than .055 of its deviations.
-DWELL = (np.arange(1, 6) / 5) ** 1.2
+DWELL = (np.arange(1, 7) / 6) ** 1.2
 #: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
 LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
 READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())
@@ -56,6 +56,11 @@ class Phases:
     local1: np.ndarray
     start: np.ndarray
     steady: bool
+
+    def of(self, runs: np.ndarray) -> Phases:
+        """Those of some of the runs."""
+        names = ("length", "u0", "u1", "local0", "local1", "start")
+        return replace(self, **{name: getattr(self, name)[runs] for name in names})
 
 
 def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -16,13 +17,41 @@ from .plant import Plant
 
 #: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
 Slope = dict[int, np.ndarray]
-#: Part -> path -> values of each row (n,).
-_Changes = dict[str, dict[str, np.ndarray]]
+#: Path -> values of each row (n,).
+_Values = dict[str, np.ndarray]
 
 
-def same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
-    """Whether both change the same to the same."""
-    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
+@dataclass
+class _Setting:
+    """Values of parameters beside which candidates are tried.
+
+    Attributes:
+        values: those that differ
+        parts: what stands for the values of each part that differs
+        closed: whether no other candidate may join
+    """
+
+    values: _Values = field(default_factory=dict)
+    parts: dict[str, tuple[tuple[str, bytes], ...]] = field(default_factory=dict)
+    closed: bool = False
+
+    @staticmethod
+    def of(values: _Values) -> _Setting:
+        """By path."""
+        found = _Setting(values)
+        for path, value in values.items():
+            part = path.partition(".")[0]
+            found.parts[part] = (*found.parts.get(part, ()), (path, value.tobytes()))
+        return found
+
+    def joined(self, other: _Setting) -> bool:
+        """Whether another one has joined: neither is closed, and they agree on what both differ in."""
+        both = self.parts.keys() & other.parts.keys()
+        if self.closed or other.closed or any(self.parts[part] != other.parts[part] for part in both):
+            return False
+        self.values |= other.values
+        self.parts |= other.parts
+        return True
 
 
 def total(terms: Sequence[tuple[np.ndarray | float, Slope]]) -> Slope:
@@ -69,12 +98,13 @@ class Observed(Measured):
         room = np.array([s.kind == "ambient" for s in self.given])
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
-        #: Form and parameters at size zero -> values and their slopes, of those that build on no value of the rig.
-        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray]] = {}
+        #: Form and parameters at size zero -> as `_Look._neutral`, of those that build on no value of the rig.
+        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray, _Setting]] = {}
         self._phases = duty(campaign, self.rows, self.starts)
         at = self.entries
-        #: Of each place that is read: its test, and its number among the reads of a run.
-        self.test = campaign.test[at.place_row]
+        #: Of each place that is read: its test, the run of that, and its number among the reads of a run.
+        self.test = self.run = campaign.test[at.place_row]
+        self.ran = np.arange(campaign.n_tests)
         self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
         #: Which reads of a run lie along logged courses.
         self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
@@ -82,6 +112,13 @@ class Observed(Measured):
     def another(self, campaign: Campaign) -> Observed:
         """Another campaign on the same rig."""
         return Observed(self.plant, campaign, self.nuisances, self.oils, self.point)
+
+    def only(self, kept: np.ndarray) -> Self:
+        """The same with some of its entries (k,); a test without any is not run, and its places stand for nothing."""
+        found = super().only(kept)
+        found.ran = np.unique(self.campaign.test[found.row])
+        found.run = np.minimum(np.searchsorted(found.ran, self.test), len(found.ran) - 1)
+        return found
 
     def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""
@@ -147,8 +184,9 @@ class _Look:
         self.truth = dict(o.sensors)
         self.truth_slopes: dict[str, Slope] = {s.name: {} for s in o.given}
         self.pace, self.pace_slopes = np.ones(self.n), Slope()
-        #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
-        self.settings: list[tuple[bool, _Changes]] = []
+        #: Settings beside the one that acts.
+        self.settings: list[_Setting] = []
+        self.acting = {path.partition(".")[0] for formula, _ in parts for path in formula.paths}
         #: Slopes of candidates: setting, path, direction, of each row.
         self.tried_slopes: list[tuple[int, str, int, np.ndarray]] = []
         self._nuisances()
@@ -177,13 +215,18 @@ class _Look:
         base = {name: self._base(name) for name in formula.bases}
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
-    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values of a candidate at size zero and their slopes by it (v, n), kept if they follow no value of the rig."""
+    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Setting]:
+        """Values of a candidate at size zero and their slopes by it (v, n), and the setting it is tried at.
+
+        They are kept where they follow no value of the rig.
+        """
         key = formula, t.tobytes()
         if (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
-            known = value, by_t[:, :, 0].copy()
-            if not formula.bases:
+            pairs = zip(formula.paths, value, strict=False)
+            setting = _Setting.of({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
+            known = value, by_t[:, :, 0].copy(), setting
+            if not formula.bases and self.values.keys().isdisjoint(formula.paths):
                 self.o.neutral[key] = known
         return known
 
@@ -206,9 +249,9 @@ class _Look:
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
         """The direction of a candidate's size, at its own shapes."""
-        value, slopes = self._neutral(formula, _none(t))
+        _, slopes, wanted = self._neutral(formula, _none(t))
         n_paths = len(formula.paths)
-        setting = self._setting(dict(zip(formula.paths, value, strict=False)))
+        setting = self._setting(wanted)
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
         self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
         for i, name in enumerate(formula.given, start=n_paths):
@@ -216,24 +259,15 @@ class _Look:
         if formula.paced:
             self.pace_slopes[self.d] = self.pace * slopes[-1]
 
-    def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
-        """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.
-
-        Args:
-            wanted: path -> value
-        """
-        changed: _Changes = {}
-        for path, value in wanted.items():
-            if not np.array_equal(value, self._base(path)):
-                changed.setdefault(path.partition(".")[0], {})[path] = value
-        if not changed:
+    def _setting(self, wanted: _Setting) -> int:
+        """Number of the setting a candidate is tried at; what it changes of a part, no other there changes."""
+        if not wanted.values:
             return 0
-        alone = bool(changed.keys() & {path.partition(".")[0] for f, _ in self.parts for path in f.paths})
-        for k, (closed, known) in enumerate(self.settings, start=1):
-            if not alone and not closed and all(same(known[part], changed[part]) for part in known.keys() & changed):
-                known.update(changed)
+        own = replace(wanted, closed=not self.acting.isdisjoint(wanted.parts))
+        for k, known in enumerate(self.settings, start=1):
+            if known.joined(own):
                 return k
-        self.settings.append((alone, changed))
+        self.settings.append(replace(own, values=dict(own.values), parts=dict(own.parts)))
         return len(self.settings)
 
     def _run(self, wanted: Collection[int] | None = None) -> Marched:
@@ -253,18 +287,19 @@ class _Look:
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
             p[:, :, plant.place[path]] = value
-        for own, (_, changes) in zip(p[1:], self.settings, strict=True):
-            for path, value in (item for part in changes.values() for item in part.items()):
+        for own, setting in zip(p[1:], self.settings, strict=True):
+            for path, value in setting.values.items():
                 own[:, plant.place[path]] = value
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
-        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], wanted)
+        rows = o.rows[o.ran]
+        return march(plant, phases.of(o.ran), x0[o.ran], p[:, rows], pace[rows], wanted)
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows at each place (p, shown)."""
-        return np.asarray(self._run().y[self.o.test, self.o.reads])
+        return np.asarray(self._run().y[self.o.run, self.o.reads])
 
     def instruments(
         self, formula: Formula, t: np.ndarray, true: Mapping[str, np.ndarray]
@@ -338,12 +373,12 @@ class _Look:
         """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
         o, entries = self.o, sorted(self._entries(), key=lambda e: e[0])
         found = self._run({k for _, k, _ in entries})
-        test = o.test
-        local = found.local[test, :, :, o.reads]
+        test, run = o.test, o.run
+        local = found.local[run, :, :, o.reads]
         signs = np.array([o.signs[s.name] for s in o.given])
         by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
-        own = found.by[test, :, :, o.reads]  # p, H, knobs + 1, shown
-        tried = found.tried[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
+        own = found.by[run, :, :, o.reads]  # p, H, knobs + 1, shown
+        tried = found.tried[run, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
         tried = tried.reshape(len(test), o.height, -1, found.y.shape[2])
         all_by = np.concatenate([own, by_truth, tried], axis=2)
         by = np.zeros((len(test), found.y.shape[2], self.d))
@@ -352,7 +387,7 @@ class _Look:
             ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, p, H
             effects = np.einsum("nhes,enh->nse", all_by[:, :, [k for _, k, _ in entries]], ways, optimize=False)
             by[:, :, places] = np.add.reduceat(effects, first, axis=2)
-        return found.y[test, o.reads], by, local
+        return found.y[run, o.reads], by, local
 
     def _entries(self) -> list[tuple[int, int, np.ndarray]]:
         """All slopes: direction, column (knobs, pace, given sensors, tried knobs of further settings), of each row."""

@@ -167,8 +167,8 @@ def _compiled(
     cut, symbols, constants = hoist([ca.SX(r).nz[:] for found in results.values() for r in found], arguments[-1])
     every, names, texts, rest = {"constants": [constants]}, ["w", "u", "p", "c"], [], iter(cut)
     every |= {name: list(islice(rest, len(found))) for name, found in results.items()}
-    for name, outputs in every.items():
-        outputs += [ca.SX(0, 1)] * (2 - len(outputs))
+    for name, found in every.items():
+        outputs = [*found, *[ca.SX(0, 1)] * (2 - len(found))]
         function = ca.Function(name, [*arguments, symbols], outputs, names, ["first", "second"], {"cse": True})
         texts.append(emit.function(function, "lanes_", "lanes"))
         texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
