@@ -182,12 +182,7 @@ def read_plan(
 
 
 def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
-    """Problems of causes to tell apart that the library of a rig does not have.
-
-    Args:
-        names: as the user gave them
-        known: of the library
-    """
+    """Problems of causes to tell apart that the library of a rig does not have."""
     problems = []
     for name in (n for n in names if n not in known):
         alike = [c for c in known if name in c.split(".")]

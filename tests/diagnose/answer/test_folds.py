@@ -12,6 +12,7 @@ from gearheat.tools.diagnose.answer.channels import levels
 from gearheat.tools.diagnose.answer.experiments import planned_campaign
 from gearheat.tools.diagnose.answer.gain import schemes
 from gearheat.tools.diagnose.infer.found import Found
+from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.setting import Setting
 
 
@@ -25,6 +26,21 @@ def test_every_row_is_left_out_once(wrong: tuple[Setting, Found]) -> None:
     campaign = wrong[1].problem.data.campaign
     for folds in schemes(campaign).values():
         assert sorted(np.concatenate(folds)) == list(range(campaign.n))
+
+
+def test_without_some_tests_all_else_is_as_it_was(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    whole, tests = found.problem, found.problem.data.campaign.test[found.problem.data.row]
+    kept = np.flatnonzero(~np.isin(tests, [1, 2]))
+    some = whole.without(frozenset({Aside(int(kept[3])), Aside(1, "n_sun")})).only(kept)
+    assert some.aside == {Aside(3), Aside(1, "n_sun")}
+    for z, acting in ((found.null.look.z, ()), (found.hypotheses[0].fit.look.z, found.hypotheses[0].fit.look.acting)):
+        look, part = whole.look(z, acting), some.look(z, acting)
+        np.testing.assert_allclose(part.shown, look.shown[kept], rtol=1e-12)
+        np.testing.assert_allclose(part.jacobian, look.jacobian[kept], rtol=1e-9, atol=1e-12)
+        noise = Problem([*some.campaigns], some.day_sd).noise(part)
+        rest = whole.without(frozenset()).noise(look).covariance[np.ix_(kept, kept)]
+        np.testing.assert_allclose(noise.covariance, rest, rtol=1e-9, atol=1e-12)
 
 
 def test_a_large_campaign_is_grouped_by_its_own_levels() -> None:

@@ -148,13 +148,7 @@ def rank_experiments(
 
 
 def _look_ahead(design: Design, apart: Mapping[Pair, float], *done: str) -> Outlook:
-    """The distances behind some experiments.
-
-    Args:
-        design: of the campaign and all experiments
-        apart: pair -> its distance now
-        done: ids of the experiments
-    """
+    """The distances behind some experiments, by their ids, and by those `apart` that there are now."""
     after = design.distances(*done) if done else apart
     nearest = min(apart, key=lambda p: after[p])
     return Outlook(

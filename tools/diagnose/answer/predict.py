@@ -21,12 +21,7 @@ COUNTS = 0.03
 
 
 def predict(found: Found, points: Campaign) -> tuple[Prediction, ...]:
-    """What the instruments will show at points, where the machine can be run.
-
-    Args:
-        found: the search
-        points: their conditions
-    """
+    """What the instruments will show at points, where the machine can be run."""
     read, told = found.problem.data.read, []
     tables = [
         [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)] for table in simulate(found, points)
@@ -40,12 +35,7 @@ def predict(found: Found, points: Campaign) -> tuple[Prediction, ...]:
 
 
 def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
-    """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run.
-
-    Args:
-        found: the search
-        points: conditions
-    """
+    """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run."""
     o = _observed(found, points)
     nominal = _predicted(found.problem, found.null, o)
     weights: dict[int, float] = {}

@@ -69,12 +69,7 @@ class Fleet:
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
-    """A rig and its knobs, compiled for logs with the sensors of one.
-
-    Args:
-        scenario: the rig
-        log: with all sensors
-    """
+    """A rig and its knobs, compiled for logs with the sensors of one."""
     roles = Roles.of(scenario.spec)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
     spec = scenario.spec.with_values(relays)
@@ -261,13 +256,7 @@ class LogProblem(Problem):
 
 
 def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem:
-    """The logs in question as a problem like that of readings.
-
-    Args:
-        found: what the healthy logs say
-        asked: what the logs in question say
-        logs: in question
-    """
+    """The logs in question as a problem like that of readings, beside what healthy ones say."""
     own, data = found.filter, asked.windows
     n = int(asked.span.max()) + 1
     told = asked.told.spread(found.levels.window).summed(asked.span, n)

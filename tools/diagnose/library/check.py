@@ -29,14 +29,7 @@ class _Known(dict[str, float]):
 
 
 def problems(cause: Cause, spec: Spec, sensors: Sequence[Sensor], ranges: Ranges) -> list[str]:
-    """What is wrong with a cause, all at once.
-
-    Args:
-        cause: the cause
-        spec: the machine
-        sensors: of the campaign
-        ranges: of the data
-    """
+    """What is wrong with a cause, all at once."""
     size = cause.size
     found = []
     if not size.low <= 0 <= size.high or size.low == size.high:

@@ -24,11 +24,7 @@ SHINY = 0.2
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All causes of the family that the machine's parts allow.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All causes of the family that the machine's parts allow."""
     roles = at.roles
     air = [f"{name}.surface" for name in roles.surfaces]
     if air:

@@ -191,9 +191,6 @@ def thin_film_friction(at: Context) -> Nuisance | None:
 
     A cause that warms the oil takes the machine to films thinner than on any healthy day. The model's tooth friction is
     uncertain there, and without this nuisance its error would be taken for a second cause.
-
-    Args:
-        at: machine and data
     """
     places = [place for place in at.roles.places["teeth"] if place.lubricant]
     if not places:

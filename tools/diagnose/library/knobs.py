@@ -67,11 +67,7 @@ WHENS = (
 
 
 def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
-    """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move.
-
-    Args:
-        found: the knobs
-    """
+    """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move."""
     groups: dict[str, list[Knob]] = {}
     for knob in found:
         groups.setdefault(knob.cause, []).append(knob)
@@ -96,12 +92,7 @@ def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
 
 
 def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
-    """All knobs that the machine and its sensors have.
-
-    Args:
-        roles: of the machine
-        sensors: of the log
-    """
+    """All knobs that a machine and the sensors of its log have."""
     rows = TABLE["knobs"]["rows"]
     return (*_teeth(roles), *(knob for row in rows for knob in _parts(roles, **row)), *_sensors(sensors))
 

@@ -29,11 +29,7 @@ RUBBING = (
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All causes of the family that the machine's parts allow.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All causes of the family that the machine's parts allow."""
     places = at.roles.places
     if wet := _stirring(at):
         yield beside_own_law(extra_loss(at, "losses.churning", wet), at, {p.name: p.parts for p in wet})

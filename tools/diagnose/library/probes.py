@@ -44,22 +44,12 @@ def wrong(sensor: Sensor, size: str, error: Error) -> Form:
 
 
 def one_of(sensor: Sensor, own: Sequence[Sensor]) -> str:
-    """Name of a form for one of several instruments.
-
-    Args:
-        sensor: the one
-        own: all of them
-    """
+    """Name of a form for one of several instruments, "" for the only one."""
     return sensor.name if len(own) > 1 else ""
 
 
 def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
-    """Oil probes that see something between the oil and the room, or the oil and a body.
-
-    Args:
-        at: what the causes are made for
-        own: the oil probes
-    """
+    """Oil probes that see something between the oil and the room, or the oil and a body."""
     others = [(s, 1.0) for s in at.sensors if s.kind == "ambient"][:1]
     others += [(s, BODY) for s in at.sensors if s.kind == "wall_temp" and s.role == "read"][:1]
     read = [s for s in own if s.role == "read"]
@@ -86,12 +76,7 @@ def _drawn(at: Context, probe: Sensor, other: Sensor, more: float) -> Callable[[
 
 
 def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
-    """Room probes in the warm air of the machine.
-
-    Args:
-        at: what the causes are made for
-        own: the room probes
-    """
+    """Room probes in the warm air of the machine."""
     rise = at.ranges.rise
 
     def error(theta: Theta, row: Row, value: Num) -> Num:
@@ -104,12 +89,7 @@ def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
 
 
 def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
-    """Thermometers that are exchanged with others.
-
-    Args:
-        at: what the causes are made for
-        own: those of one kind
-    """
+    """Thermometers of one kind that are exchanged with others."""
     warm = [s for s in at.sensors if s.kind in THERMOMETERS and s.role == "read"]
     pairs = [(a, b) for i, a in enumerate(warm) for b in warm[i + 1 :] if a in own and a.reads != b.reads]
 
@@ -128,12 +108,7 @@ def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
 
 
 def lag(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
-    """Thermometers that follow late; only logs know how fast what they read changes.
-
-    Args:
-        at: what the causes are made for
-        own: those of one kind
-    """
+    """Thermometers of one kind that follow late; only logs know how fast what they read changes."""
     read = [s for s in own if s.kind in THERMOMETERS and s.role == "read"]
     if not read or "logs" not in at.ranges.known:
         return

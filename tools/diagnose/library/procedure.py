@@ -20,11 +20,7 @@ HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All causes of the family.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All causes of the family."""
     if "dwell" in at.ranges.known:
         yield not_stationary(at)
     if "order" in at.ranges.known:

@@ -115,12 +115,7 @@ def _from_file(path: Path, wrong: list[str]) -> Family | None:
 
 
 def with_mountings(causes: Iterable[Cause], at: Context) -> Iterator[Cause]:
-    """The same causes, those of machine and instruments with forms for campaigns of several mountings.
-
-    Args:
-        causes: of the taxonomy
-        at: what they are made for
-    """
+    """The same causes, those of machine and instruments with forms for campaigns of several mountings."""
     for cause in causes:
         family, general = cause.id.partition(".")[0], cause.forms[0]
         if family in REMOUNTED and not general.spread and not general.regime:

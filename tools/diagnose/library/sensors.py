@@ -82,11 +82,7 @@ def turned(mode: Mode) -> Mode:
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All errors of all kinds of instruments that there are.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All errors of all kinds of instruments that there are."""
     for name in dict.fromkeys(s.kind for s in at.sensors if s.kind in KINDS):
         own = [s for s in at.sensors if s.kind == name]
         yield from _Instruments(name, own, at).causes()

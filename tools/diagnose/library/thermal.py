@@ -23,22 +23,14 @@ STANDS = 0.05
 
 
 def heat_causes(at: Context) -> Iterator[Cause]:
-    """All causes of heat that no shaft brings.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All causes of heat that no shaft brings."""
     yield external_source(at)
     if "logs" in at.ranges.known:
         yield parked(at)
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All causes of heat that is stored or appears elsewhere.
-
-    Args:
-        at: machine, data and instruments
-    """
+    """All causes of heat that is stored or appears elsewhere."""
     if at.roles.inside or at.roles.outside:
         yield mass(at)
     known = entry("thermal.split", at)

@@ -165,7 +165,7 @@ def _compiled(
         FmuError: the compiler fails
     """
     cut, symbols, constants = hoist([ca.SX(r).nz[:] for found in results.values() for r in found], arguments[-1])
-    every, names, texts, rest = {"constants": [constants]}, ["w", "u", "p", "c"], [], iter(cut)
+    every, names, texts, rest = {"constants": [constants]}, ["i0", "i1", "i2", "i3"], [], iter(cut)
     every |= {name: list(islice(rest, len(found))) for name, found in results.items()}
     for name, found in every.items():
         outputs = [*found, *[ca.SX(0, 1)] * (2 - len(found))]

@@ -205,13 +205,7 @@ def values(found: Found, z: np.ndarray) -> dict[str, float]:
 
 
 def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrated, ...]:
-    """Values that the data moved, in the units of the rig file.
-
-    Args:
-        setting: the rig
-        found: the search
-        h: the hypothesis of the answer
-    """
+    """Values that the data moved, in the units of the rig file."""
     known, plant, told = setting.scenario.settable(), found.problem.data.plant, []
     nominal, extended = values(found, found.null.look.z), values(found, h.fit.look.z)
     for path, value in nominal.items():
@@ -225,13 +219,7 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
 
 
 def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
-    """The text of the rig file: calibrated, with the causes of a hypothesis, and how uncertain the data leave both.
-
-    Args:
-        setting: the rig
-        found: the search
-        h: the hypothesis of the answer
-    """
+    """The text of the rig file: calibrated, with the causes of a hypothesis, and how uncertain the data leave both."""
     data, scenario = found.problem.data.campaign, replace(setting.scenario, spec=setting.spec)
     oils = dict.fromkeys(data.oil)
     if len(oils) == 1 and (own := found.problem.data.oils.get(next(iter(oils)))):
