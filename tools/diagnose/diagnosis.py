@@ -83,7 +83,7 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
 
 
 def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) -> Findings:
-    """The findings on readings with which logs were asked, too, and what these say alone; `causes` are those of readings."""
+    """The findings on readings and their causes with which logs were asked, too, and what these say alone."""
     of, known = logs.findings.about, {cause.id for cause in causes}
     said = [f"the logs alone: {logs.findings.says.verdict}", *logs.findings.warnings]
     lacking = [c for c in logs.causes if c not in known and logs.of(c) > ALONE]
