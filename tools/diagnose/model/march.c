@@ -49,9 +49,10 @@ static const double A[STAGES][STAGES] = {
     {(-1.5 * GAMMA + 4 - 0.25 / GAMMA), (1.5 * GAMMA - 5 + 1.25 / GAMMA), 1}};
 
 /* Newton's corrections at most, and those taken whole: halves meet at the steep middle of a thermostat, where whole ones
-   go to and fro. Size over the nominals of the last; longest one; a temperature of a runaway [K]. */
+   go to and fro. Size over the nominals of the last; of one that moves no derivative; longest one; a temperature of a
+   runaway [K]. */
 enum { MOST = 34, WHOLE = 14 };
-static const double SETTLED = 1e-4, LONGEST = 10, RUNAWAY = 700;
+static const double SETTLED = 1e-4, NOTHING = 1e-6, LONGEST = 10, RUNAWAY = 700;
 
 #define EACH for (int l = 0; l < LANES; l++)
 
@@ -171,12 +172,14 @@ static void linear(Runs *R, const lanes *w, lanes length, whole from, lanes *LU,
 }
 
 /* Newton's method for w from row `from` on in the lanes of `left`, which keeps those without a solution; the states
-   solve w = R->base + length rate(w). */
-static void newton(Runs *R, lanes *w, lanes length, whole from, int *left) {
+   solve w = R->base + length rate(w). Returns the size of the last correction. */
+static double newton(Runs *R, lanes *w, lanes length, whole from, int *left) {
   const Plant *P = R->plant;
+  double last = INFINITY;
   int open[LANES];
   memcpy(open, left, sizeof open);
   for (int tries = 0; tries < MOST && any(open); tries++) {
+    last = 0;
     linear(R, w, length, from, R->LU, R->pivot, open);
     for (whole i = from; i < P->nw; i++) R->left[i - from] = i < P->nx ? w[i] - R->base[i] - length * R->r[i] : R->r[i];
     solved(R->LU, R->pivot, P->nw - from, R->left);
@@ -189,9 +192,11 @@ static void newton(Runs *R, lanes *w, lanes length, whole from, int *left) {
       if (!isfinite(size)) open[l] = 0;
       const double part = size > LONGEST ? LONGEST / size : tries < WHOLE || size < SETTLED ? 1 : 0.5;
       for (whole i = from; i < P->nw && open[l]; i++) w[i][l] -= part * R->left[i - from][l];
+      if (open[l] && size > last) last = size;
       if (open[l] && size < SETTLED) open[l] = left[l] = 0;
     }
   }
+  return last;
 }
 
 /* The algebraic variables after a jump of the inputs, from the last ones or from the model's guess. */
@@ -225,11 +230,11 @@ static void stage(Runs *R, lanes time, double share, whole read, int kept) {
     R->trial[i] = R->w[i];
     EACH if (left[l] && ahead != 0) R->trial[i][l] = R->w[i][l] + ahead * (R->w[i][l] - R->last[i][l]);
   }
-  newton(R, R->trial, length, 0, left);
+  double last = newton(R, R->trial, length, 0, left);
   if (any(left) && ahead != 0) {
     EACH if (left[l])
       for (whole i = 0; i < P->nw; i++) R->trial[i][l] = R->w[i][l];
-    newton(R, R->trial, length, 0, left);
+    last = newton(R, R->trial, length, 0, left);
   }
   lanes *old = R->last;
   R->last = R->w, R->w = R->trial, R->trial = old;
@@ -240,7 +245,9 @@ static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   memcpy(s->w, R->w, P->nw * sizeof *R->w);
   s->time = time, s->length = length, s->share = share, s->phase = R->phase, s->read = read;
   memcpy(left, R->on, sizeof left);
-  linear(R, s->w, length, 0, s->LU, s->pivot, left);
+  if (last < NOTHING)
+    memcpy(s->LU, R->LU, P->nw * P->nw * sizeof *s->LU), memcpy(s->pivot, R->pivot, P->nw * LANES * sizeof *s->pivot);
+  else linear(R, s->w, length, 0, s->LU, s->pivot, left);
   memcpy(s->r, R->r, P->nx * sizeof *R->r);
   EACH if (R->on[l] && !left[l]) R->on[l] = R->fine[l] = 0;
   memcpy(s->on, R->on, sizeof s->on);

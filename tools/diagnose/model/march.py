@@ -18,8 +18,8 @@ from ....fmu.batch_library import LANES, WIDER, instructions, share_rows
 from ....scenarios.measured.table import PLACES, Campaign
 from .plant import Plant, library, record
 
-#: Shares of a dwell where steps end: of 18 machines, 40 steps move no reading by more than .055 of its deviations.
-DWELL = (np.arange(1, 7) / 6) ** 1.2
+#: Shares of a dwell where steps end: of 18 machines, 40 steps move no reading by more than .024 of its deviations.
+DWELL = (np.arange(1, 8) / 7) ** 1.2
 #: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
 LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
 READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -17,41 +17,17 @@ from .plant import Plant
 
 #: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
 Slope = dict[int, np.ndarray]
-#: Path -> values of each row (n,).
-_Values = dict[str, np.ndarray]
+#: Part -> paths that are changed in it, and the bytes of their values of each row, which are equal where these are.
+_Changes = dict[str, tuple[tuple[str, bytes], ...]]
 
 
-@dataclass
-class _Setting:
-    """Values of parameters beside which candidates are tried.
-
-    Attributes:
-        values: those that differ
-        parts: what stands for the values of each part that differs
-        closed: whether no other candidate may join
-    """
-
-    values: _Values = field(default_factory=dict)
-    parts: dict[str, tuple[tuple[str, bytes], ...]] = field(default_factory=dict)
-    closed: bool = False
-
-    @staticmethod
-    def of(values: _Values) -> _Setting:
-        """By path."""
-        found = _Setting(values)
-        for path, value in values.items():
-            part = path.partition(".")[0]
-            found.parts[part] = (*found.parts.get(part, ()), (path, value.tobytes()))
-        return found
-
-    def joined(self, other: _Setting) -> bool:
-        """Whether another one has joined: neither is closed, and they agree on what both differ in."""
-        both = self.parts.keys() & other.parts.keys()
-        if self.closed or other.closed or any(self.parts[part] != other.parts[part] for part in both):
-            return False
-        self.values |= other.values
-        self.parts |= other.parts
-        return True
+def by_part(values: Mapping[str, np.ndarray]) -> _Changes:
+    """Changes by path (n,)."""
+    found: _Changes = {}
+    for path, value in values.items():
+        part = path.partition(".")[0]
+        found[part] = (*found.get(part, ()), (path, value.tobytes()))
+    return found
 
 
 def total(terms: Sequence[tuple[np.ndarray | float, Slope]]) -> Slope:
@@ -99,7 +75,7 @@ class Observed(Measured):
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
         #: Form and parameters at size zero -> as `_Look._neutral`, of those that build on no value of the rig.
-        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray, _Setting]] = {}
+        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray, _Changes]] = {}
         self._phases = duty(campaign, self.rows, self.starts)
         at = self.entries
         #: Of each place that is read: its test, the run of that, and its number among the reads of a run.
@@ -184,8 +160,8 @@ class _Look:
         self.truth = dict(o.sensors)
         self.truth_slopes: dict[str, Slope] = {s.name: {} for s in o.given}
         self.pace, self.pace_slopes = np.ones(self.n), Slope()
-        #: Settings beside the one that acts.
-        self.settings: list[_Setting] = []
+        #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
+        self.settings: list[tuple[bool, _Changes]] = []
         self.acting = {path.partition(".")[0] for formula, _ in parts for path in formula.paths}
         #: Slopes of candidates: setting, path, direction, of each row.
         self.tried_slopes: list[tuple[int, str, int, np.ndarray]] = []
@@ -215,17 +191,14 @@ class _Look:
         base = {name: self._base(name) for name in formula.bases}
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
-    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Setting]:
-        """Values of a candidate at size zero and their slopes by it (v, n), and the setting it is tried at.
-
-        They are kept where they follow no value of the rig.
-        """
+    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Changes]:
+        """Values of a candidate at size zero, their slopes (v, n), what changes; kept if they follow no value of the rig."""
         key = formula, t.tobytes()
         if (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
             pairs = zip(formula.paths, value, strict=False)
-            setting = _Setting.of({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
-            known = value, by_t[:, :, 0].copy(), setting
+            changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
+            known = value, by_t[:, :, 0].copy(), changes
             if not formula.bases and self.values.keys().isdisjoint(formula.paths):
                 self.o.neutral[key] = known
         return known
@@ -259,15 +232,16 @@ class _Look:
         if formula.paced:
             self.pace_slopes[self.d] = self.pace * slopes[-1]
 
-    def _setting(self, wanted: _Setting) -> int:
+    def _setting(self, wanted: _Changes) -> int:
         """Number of the setting a candidate is tried at; what it changes of a part, no other there changes."""
-        if not wanted.values:
+        if not wanted:
             return 0
-        own = replace(wanted, closed=not self.acting.isdisjoint(wanted.parts))
-        for k, known in enumerate(self.settings, start=1):
-            if known.joined(own):
+        alone = not self.acting.isdisjoint(wanted)
+        for k, (closed, known) in enumerate(self.settings, start=1):
+            if not (alone or closed or any(known[part] != wanted[part] for part in known.keys() & wanted)):
+                known.update(wanted)
                 return k
-        self.settings.append(replace(own, values=dict(own.values), parts=dict(own.parts)))
+        self.settings.append((alone, dict(wanted)))
         return len(self.settings)
 
     def _run(self, wanted: Collection[int] | None = None) -> Marched:
@@ -287,9 +261,9 @@ class _Look:
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
             p[:, :, plant.place[path]] = value
-        for own, setting in zip(p[1:], self.settings, strict=True):
-            for path, value in setting.values.items():
-                own[:, plant.place[path]] = value
+        for own, (_, changes) in zip(p[1:], self.settings, strict=True):
+            for path, value in (item for part in changes.values() for item in part):
+                own[:, plant.place[path]] = np.frombuffer(value)
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
