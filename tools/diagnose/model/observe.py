@@ -192,7 +192,7 @@ class _Look:
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
     def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Changes]:
-        """Values of a candidate at size zero, their slopes (v, n), what changes; kept if they follow no value of the rig."""
+        """Values of a candidate at size zero, their slopes by it (v, n), what changes; kept if they are always so."""
         key = formula, t.tobytes()
         if (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
