@@ -262,8 +262,8 @@ class _Look:
         for path, value in self.values.items():
             p[:, :, plant.place[path]] = value
         for own, (_, changes) in zip(p[1:], self.settings, strict=True):
-            for path, value in (item for part in changes.values() for item in part):
-                own[:, plant.place[path]] = np.frombuffer(value)
+            for path, bits in (item for part in changes.values() for item in part):
+                own[:, plant.place[path]] = np.frombuffer(bits)
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
