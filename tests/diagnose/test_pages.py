@@ -1,6 +1,6 @@
 """The pages are true: one's own gearbox works as it stands there, and the measured campaign says what is printed.
 
-With `GEARHEAT_HIDDEN=all` the measured campaign is diagnosed again, which takes most of a minute, and compared with the
+With `GEARHEAT_HIDDEN=all` the measured campaign is diagnosed again, which takes half a minute, and compared with the
 page. Otherwise the page's tables are read, and hold together among themselves and with the causes there are.
 """
 

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.special import ndtri
 
 from ....scenarios.measured.table import Campaign, Sensor
-from ..infer.evidence import WIDTHS, White, log_bayes_factors
-from ..infer.fit import Fit
+from ..infer.evidence import White, log_bayes_factors
+from ..infer.fit import Fit, prior_precision
 from ..infer.found import Found, Hypothesis, Member
 from ..infer.problem import Acting, Problem, limits
 from ..library.cause import Form, Shape, Size
@@ -35,13 +35,8 @@ SPREADS = np.geomspace(0.1, 8.0, 25)
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
     fit, J = h.fit, h.fit.look.jacobian
-    white = White.of(fit.noise.covariance)
-    precision = np.ones(J.shape[1])
-    sizes = places(problem, h)
-    precision[sizes] = WIDTHS[-1] ** -2
-    G = white(J)
-    covariance = np.linalg.inv(G.T @ G + np.diag(precision))
-    x = fit.look.x
+    x, sizes, G = fit.look.x, places(problem, h), White.of(fit.noise.covariance)(J)
+    covariance = np.linalg.inv(G.T @ G + np.diag(prior_precision(problem, fit.look.acting)))
     covariance[sizes, sizes] += (fit.form * x[sizes]) ** 2
     return x, covariance
 
