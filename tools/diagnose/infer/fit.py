@@ -37,7 +37,7 @@ LONGEST_SHAPE = 0.8
 #: Share of the variance of what a form leaves that all channels have together; each has the rest for itself.
 TOGETHER = 0.5
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
-FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
+FORM = ((0.01, 0.25), (0.03, 0.25), (0.06, 0.25), (0.12, 0.18), (0.24, 0.07))
 
 
 @dataclass(frozen=True)
@@ -268,11 +268,11 @@ class _Line:
         effects = self._effects()
         rough = _rough(self.problem, effects)
         logs = []
-        for share, weight in FORM.items():
+        for share, weight in FORM:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
-        form, short = list(FORM)[int(np.argmax(logs))], self._short(noise)
+        form, short = FORM[int(np.argmax(logs))][0], self._short(noise)
         evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
         return Fit(look, noise, cost, evidence, form, effects, short)
 
