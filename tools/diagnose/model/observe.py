@@ -193,13 +193,13 @@ class _Look:
 
     def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Changes]:
         """Values of a candidate at size zero, their slopes by it (v, n), what changes; kept if they are always so."""
-        key = formula, t.tobytes()
-        if (known := self.o.neutral.get(key)) is None:
+        key, alone = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
+        if not alone or (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
             pairs = zip(formula.paths, value, strict=False)
             changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
             known = value, by_t[:, :, 0].copy(), changes
-            if not formula.bases and self.values.keys().isdisjoint(formula.paths):
+            if alone and not formula.bases:
                 self.o.neutral[key] = known
         return known
 
