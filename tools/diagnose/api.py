@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from ...model.errors import DataError, Problems, ScenarioError
 from ...model.files import flows
 from ...scenarios.csv_table import read_cells
@@ -223,7 +225,7 @@ def diagnose(
     inputs = read(request, written, problems)
     from . import diagnosis  # what it needs loads slowly
 
-    with progress_bar() as bar:
+    with progress_bar() as bar, threadpool_limits(1, "blas"):  # small matrices: others only wait, and add otherwise
         return Diagnosis.model_construct(**dict(diagnosis.diagnose(inputs, progress or bar)))
 
 
@@ -268,7 +270,7 @@ def plan(
     inputs = read_plan(request, {name: path for name, path in given.items() if path is not None}, problems)
     from . import diagnosis  # what it needs loads slowly
 
-    with progress_bar() as progress:
+    with progress_bar() as progress, threadpool_limits(1, "blas"):
         return PlanAnswer.model_construct(**dict(diagnosis.plan(inputs, progress)))
 
 

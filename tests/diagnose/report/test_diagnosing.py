@@ -18,6 +18,7 @@ from gearheat.tools.diagnose.api import Outputs
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.show.console import as_json
 from jsonschema import validate
+from threadpoolctl import threadpool_info, threadpool_limits
 from typer.testing import CliRunner
 
 RIG = "planetary"
@@ -56,6 +57,19 @@ def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert shown.out.startswith("verdict    One cause explains the data")
     assert shown.err == "", "no bar where there is no terminal"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["o.html", "o.json", "o.toml", "p.csv"]
+
+
+def test_linear_algebra_has_one_thread_while_it_runs() -> None:
+    threads = []
+
+    def counting(inputs: Inputs, progress: Progress) -> Findings:
+        threads.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+        return infer(inputs, progress)
+
+    with threadpool_limits(2, "blas"):
+        diagnose_command(DATA, Outputs(), counting)
+        assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {2}
+    assert threads and set(threads) == {1}
 
 
 def test_json_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
