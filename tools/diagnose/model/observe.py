@@ -75,7 +75,7 @@ class Observed(Measured):
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
         #: Form and parameters at size zero -> as `_Look._neutral`, of those that build on no value of the rig.
-        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, np.ndarray, _Changes]] = {}
+        self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, _Changes]] = {}
         self._phases = duty(campaign, self.rows, self.starts)
         at = self.entries
         #: Of each place that is read: its test, the run of that, and its number among the reads of a run.
@@ -191,14 +191,14 @@ class _Look:
         base = {name: self._base(name) for name in formula.bases}
         return formula.physics(t, base, self.o.sensors, self.o.features)
 
-    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, _Changes]:
-        """Values of a candidate at size zero, their slopes by it (v, n), what changes; kept if they are always so."""
+    def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, _Changes]:
+        """Slopes of a candidate's values by its size at zero (v, n), and what changes there; kept if always so."""
         key, alone = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
         if not alone or (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
             pairs = zip(formula.paths, value, strict=False)
             changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
-            known = value, by_t[:, :, 0].copy(), changes
+            known = by_t[:, :, 0].copy(), changes
             if alone and not formula.bases:
                 self.o.neutral[key] = known
         return known
@@ -222,7 +222,7 @@ class _Look:
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
         """The direction of a candidate's size, at its own shapes."""
-        _, slopes, wanted = self._neutral(formula, _none(t))
+        slopes, wanted = self._neutral(formula, _none(t))
         n_paths = len(formula.paths)
         setting = self._setting(wanted)
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
