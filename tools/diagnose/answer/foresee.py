@@ -55,11 +55,11 @@ def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, opt
     found = temper(Weighing(problem.only(kept), formulas, options).glance())
     aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
     left = _Left(problem.without(aside), found, held)
-    counted = [(h, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
+    leader, weights = found.hypotheses[0], np.where(found.probabilities > COUNTS, found.probabilities, 0.0)
+    counted = [(h, w) for h, w in zip(found.hypotheses, weights, strict=True) if w or h is leader]  # the leader first
     errors = np.array([left.by(h.fit, h.extras) for h, _ in counted])
-    after = np.average(errors, axis=0, weights=[p for _, p in counted])
-    leader = found.hypotheses[0]
-    return Foreseen(held, left.by(found.null, ()), after, left.by(leader.fit, leader.extras), leader.causes)
+    after = np.average(errors, axis=0, weights=[w for _, w in counted])
+    return Foreseen(held, left.by(found.null, ()), after, errors[0], leader.causes)
 
 
 class _Left:
@@ -75,8 +75,7 @@ class _Left:
         self.problem, self.held = problem, held
         self.kept = np.setdiff1d(np.arange(problem.m), [*held, *problem.entries_aside])
         scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
-        spread = [f for f in found.formulas if f in scattering]
-        look = problem.look(found.null.look.z)
+        spread, look = [f for f in found.formulas if f in scattering], problem.look(found.null.look.z)
         self.terms = {t.label: t for t in (*spreads(problem, look, spread, found.prior), *remainders(problem))}
 
     def by(self, fit: Fit, extras: Sequence[Extra]) -> np.ndarray:

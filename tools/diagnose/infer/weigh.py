@@ -268,7 +268,9 @@ class Weighing:
             if key not in self.exchanged:
                 self.exchanged.add(key)
                 gone.append((key, fewer, None))
-        look = self.screened(best.fit, self.problem) if gone else self.first  # what else acts hardly changes effects
+        if not gone:
+            return
+        look = self.screened(best.fit, self.problem)  # what else acts hardly changes effects
         for key, known, one in gone:
             self._join_all(look, key, known, one)
 

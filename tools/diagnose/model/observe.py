@@ -193,13 +193,13 @@ class _Look:
 
     def _neutral(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, _Changes]:
         """Slopes of a candidate's values by its size at zero (v, n), and what changes there; kept if always so."""
-        key, alone = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
-        if not alone or (known := self.o.neutral.get(key)) is None:
+        key, untouched = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
+        if not untouched or (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
             pairs = zip(formula.paths, value, strict=False)
             changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
             known = by_t[:, :, 0].copy(), changes
-            if alone and not formula.bases:
+            if untouched and not formula.bases:
                 self.o.neutral[key] = known
         return known
 
@@ -223,11 +223,10 @@ class _Look:
     def _try(self, formula: Formula, t: np.ndarray) -> None:
         """The direction of a candidate's size, at its own shapes."""
         slopes, wanted = self._neutral(formula, _none(t))
-        n_paths = len(formula.paths)
         setting = self._setting(wanted)
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
         self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
-        for i, name in enumerate(formula.given, start=n_paths):
+        for i, name in enumerate(formula.given, start=len(formula.paths)):
             self.truth_slopes[name][self.d] = slopes[i]
         if formula.paced:
             self.pace_slopes[self.d] = self.pace * slopes[-1]
