@@ -39,7 +39,7 @@ def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = 
     formula: Any = SimpleNamespace()
     effects = effects_of(rng)
     own = [
-        Term(n, "one" if alike else n, prior.share[n], effects[:, [k]], WIDTHS, -9.0, 9.0, SimpleNamespace(), formula)  # type: ignore[arg-type]
+        Term(n, "one" if alike else n, prior.share[n], effects[:, [k]], WIDTHS, -90.0, 90.0, SimpleNamespace(), formula)  # type: ignore[arg-type]
         for k, n in enumerate(names)
     ]
     gross = [t for t in more if t.aside is not None]

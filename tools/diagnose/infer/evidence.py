@@ -11,11 +11,12 @@ from itertools import product
 
 import numpy as np
 from scipy.linalg.blas import dtrsm
-from scipy.linalg.lapack import dpotri
+from scipy.linalg.lapack import dtrtri
 from scipy.special import ndtr
 
-#: Widths of a size's prior, as multiples of its stated half width.
-WIDTHS = np.array([0.4, 0.8, 1.6, 3.2])
+#: Widths of a size's prior, as multiples of its stated half width. The last one is for what dominates a campaign: a
+#: dead fan, a seal that seizes. Without it two causes share such an effect.
+WIDTHS = np.array([0.5, 1.5, 4.5, 13.5])
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,14 @@ class White:
         return np.asarray(dtrsm(1.0, self.L.T, columns, trans_a=turned)).reshape(columns.shape)
 
     @property
+    def root(self) -> np.ndarray:
+        """The upper root W (M, M) of the inverse covariance W W'."""
+        return np.asarray(dtrtri(self.L.T)[0])
+
+    @property
     def inverse(self) -> np.ndarray:
         """The inverse covariance (M, M)."""
-        upper, _ = dpotri(self.L.T)  # zero below the diagonal, as what it is made of
-        found = upper + upper.T
-        np.fill_diagonal(found, np.diag(upper))
-        return np.asarray(found)
+        return np.asarray((root := self.root) @ root.T)
 
     @property
     def log_det(self) -> float:

@@ -104,17 +104,17 @@ class _Many:
         V = self.base + sum(w * C for w, C in zip(weights[~even], self.matrices, strict=True))
         V[np.diag_indices(len(V))] += weights[even] @ self.variances
         white = White.of(V)
-        self.inverse = inverse = white.inverse
-        a = inverse @ self.residual
+        self.root = root = white.root
+        a = root @ (root.T @ self.residual)
         value = 0.5 * self.residual @ a + 0.5 * white.log_det
         slopes = np.zeros(len(scales))
-        slopes[even] = self.variances @ (np.diag(inverse) - a**2)
-        slopes[~even] = [np.vdot(inverse, C) - a @ C @ a for C in self.matrices]
+        slopes[even] = self.variances @ ((root**2).sum(axis=1) - a**2)
+        slopes[~even] = [((root.T @ U) ** 2).sum() - ((a @ U) ** 2).sum() for U in self.columns]
         return float(value), weights * slopes
 
     def curvature(self, scales: np.ndarray) -> np.ndarray:
         """Expected second derivatives at the scales that were asked for last."""
-        even, inverse, own = self.even, self.inverse, self.variances
+        even, inverse, own = self.even, self.root @ self.root.T, self.variances
         found = np.zeros((len(even), len(even)))
         found[np.ix_(even, even)] = own @ inverse**2 @ own.T
         if self.columns:

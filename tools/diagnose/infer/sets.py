@@ -212,11 +212,12 @@ class Whitened:
         gains, at = self.gains(turned, b, best - WINDOW - whole - prior)
         logs = whole + gains + prior
         count: dict[str, int] = {}
-        for k in np.argsort(-logs, kind="stable")[: 2 * KEPT]:
+        able = np.flatnonzero(logs > best - WINDOW)
+        for k in able[np.argsort(-logs[able], kind="stable")][: 2 * KEPT].tolist():
             family = str(self.table.families[k])
-            if np.isfinite(logs[k]) and count.get(family, 0) < ALIKE:
+            if count.get(family, 0) < ALIKE:
                 count[family] = count.get(family, 0) + 1
-                yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
+                yield -float(logs[k]), (*members, k), (*widths, float(at[k]))
 
     def scatters(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
         """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.

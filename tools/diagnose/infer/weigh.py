@@ -37,8 +37,8 @@ ALONE = (4, 10)
 SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
-#: Nats behind the likeliest set within which others are fitted with its gross readings: one costs about as many.
-NEAR = 10.0
+#: Nats behind the likeliest set within which others are fitted with its gross readings: a few cost about as many.
+NEAR = 25.0
 #: p of any cause above which nothing more is fitted, where none leads: it does not know what scatters.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
@@ -242,7 +242,7 @@ class Weighing:
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
         best: dict[str, int] = {}
         for k in np.argsort(-value, kind="stable"):
-            if taken.isdisjoint((self.formulas[k].cause.id, self.formulas[k].cause.family)):
+            if np.isfinite(value[k]) and taken.isdisjoint((self.formulas[k].cause.id, self.formulas[k].cause.family)):
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
@@ -260,8 +260,11 @@ class Weighing:
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         leader, best = ranked[0]
         acting, gone = best.fit.look.acting, list[tuple[Key, Hypothesis, Acting | Extra | None]]()
-        if leader not in self.exchanged and len(best.causes) > 1:
-            gone += [*((leader, best, one) for one in acting), *((leader, best, one) for one in best.extras)]
+        if leader not in self.exchanged:
+            for limited in (a for a in acting if a.formula.form.regime):
+                self._join_all(self._limited(best.fit, limited), leader, best, limited)
+            if len(best.causes) > 1:
+                gone += [*((leader, best, one) for one in acting), *((leader, best, one) for one in best.extras)]
         self.exchanged.add(leader)
         for n in range(1, len(acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
@@ -273,6 +276,16 @@ class Weighing:
         look = self.screened(best.fit, self.problem)  # what else acts hardly changes effects
         for key, known, one in gone:
             self._join_all(look, key, known, one)
+
+    def _limited(self, near: Fit, one: Acting) -> Screen:
+        """Other causes that are limited as one of a fit is, at its threshold."""
+        form = one.formula.form
+        known = {s.name: u for s, u in zip(form.shapes, one.t[1:], strict=True) if s.name in ("threshold", "width")}
+        alike = [k for k, f in enumerate(self.formulas) if f.form.regime == form.regime and f is not one.formula]
+        places = [[0.0, *(known.get(s.name, 0.0) for s in self.formulas[k].form.shapes)] for k in alike]
+        candidates = tuple(Acting(self.formulas[k], np.array(t)) for k, t in zip(alike, places, strict=True))
+        effects = self.problem.tangents(near.look.z, near.look.acting, candidates)
+        return Screen.of(candidates, np.array(alike), effects, near.linear(self.problem))
 
     def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""

@@ -201,12 +201,18 @@ def record(**values: int | np.ndarray) -> Any:
         values: whole numbers, addresses among them, and arrays of eight bytes a number
     """
     kept = {name: v if isinstance(v, int) else np.ascontiguousarray(v) for name, v in values.items()}
-    fields = [(name, ctypes.c_int64 if isinstance(v, int) else ctypes.c_void_p) for name, v in kept.items()]
-    made = type("Record", (ctypes.Structure,), {"_fields_": fields})()
+    made = _structure(tuple((name, isinstance(v, int)) for name, v in kept.items()))()
     for name, v in kept.items():
         setattr(made, name, v if isinstance(v, int) else address(v))
     made.arrays = tuple(kept.values())
     return made
+
+
+@cache
+def _structure(fields: tuple[tuple[str, bool], ...]) -> Any:
+    """A structure of named whole numbers and places."""
+    kinds = [(name, ctypes.c_int64 if whole else ctypes.c_void_p) for name, whole in fields]
+    return type("Record", (ctypes.Structure,), {"_fields_": kinds})
 
 
 def _pattern(matrix: Any) -> Pattern:
