@@ -19,7 +19,7 @@ import numpy as np
 
 from . import files, forms
 from .classes import classes_of
-from .hide import WEAK, Choice, Hidden, causes_to_try, choose, schedule
+from .hide import BANDS, Choice, Hidden, causes_to_try, choose, schedule
 from .plan import Plan
 from .rig import RATIO
 from .signal_to_noise import Noise, Rivals, Run, Setting
@@ -115,7 +115,7 @@ def make_case(
         families = {n: partial(forms.draw, d.plan, 0.5, n, "single", oil) for n in forms.misreadings(d.plan)}
         families |= {n: partial(d.draw, n, "single", oil) for n in d.names("single")}
         rivals = Rivals(noise, families, rival_rng) if apart else None
-        band = WEAK if kind == "weak" else d.band
+        band = BANDS.get(kind, d.band)
         choice = Choice(kind, band, lambda name: d.draw(name, kind, oil, hidden_rng), noise, rivals, hidden_rng)
         hidden = choose(names, choice)
     truth = {"schema": "gearheat.truth/1", "seed": seed, "case": k, "kind": kind}

@@ -13,11 +13,11 @@ from .signal_to_noise import Noise, Rival, Rivals
 
 #: Kinds in every 25 cases; 150 cases hold 42 clean ones. "alike" has a rival so near that the right answer is a set.
 SHARES: Mapping[str, int] = {"clean": 7, "single": 6, "alike": 1, "regime": 4, "pair": 3, "outside": 2, "weak": 2}
-KINDS = tuple(SHARES)
+KINDS = (*SHARES, "severe")
 BLOCK = sum(SHARES.values())
 
-#: Signal-to-noise ratios of what is too weak to be seen.
-WEAK = (0.7, 2.4)
+#: Signal-to-noise ratios of what is too weak to be seen, and of what is larger than other kinds have.
+BANDS: Mapping[str, tuple[float, float]] = {"weak": (0.7, 2.4), "severe": (60.0, 250.0)}
 
 #: Least distance to the nearest rival of what must be named [sigma].
 APART = 3.0

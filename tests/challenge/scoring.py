@@ -23,7 +23,7 @@ from .hide import APART
 SURE = 0.9
 
 #: Kinds of cases whose causes have names.
-NAMED = ("single", "regime", "pair", "alike", "several")
+NAMED = ("single", "regime", "pair", "alike", "several", "severe")
 
 
 @dataclass(frozen=True)
@@ -228,6 +228,9 @@ BARS: tuple[Bar, ...] = (
     Bar(
         "nearer than 3 sigma: wrong with > .9", lambda o: _if(o.by_set, o.sure_wrong), (0.08, 0.03, 0.03), at_most=True
     ),
+    Bar("severe: first", lambda o: _if(o.kind == "severe", o.exact)),
+    Bar("severe: in the 90 % set", lambda o: _if(o.kind == "severe", o.covered)),
+    Bar("severe: wrong with > .9", lambda o: _if(o.kind == "severe", o.sure_wrong), at_most=True),
     Bar("weak: wrong with > .9", lambda o: _if(o.kind == "weak", o.sure_wrong), (0.10, 0.05, 0.05), at_most=True),
     Bar("impact error, median", lambda o: o.impact_error, (0.20, 0.10, 0.05), "median", True),
     Bar("held-out RMSE after/before, median", lambda o: o.gain, (0.35, 0.25, 0.15), "median", True),

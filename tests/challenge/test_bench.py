@@ -17,7 +17,7 @@ from challenge.__main__ import app
 from challenge.answers import Answer, Hypothesis, ask_command, read_answer
 from challenge.bench import RULES, run, tasks
 from challenge.classes import classes_of
-from challenge.hide import APART, KINDS, SHARES, schedule
+from challenge.hide import APART, SHARES, schedule
 from challenge.plan import draw_plan
 from challenge.printing import show
 from challenge.scoring import Outcome, metrics, report, score, wilson
@@ -214,7 +214,7 @@ def test_what_scatters_from_test_to_test_is_as_loud_as_its_likelihood_says() -> 
 
 def test_schedule() -> None:
     kinds = [schedule(1, 4, k)[0] for k in range(150)]
-    assert {kind: kinds.count(kind) for kind in KINDS} == {kind: 6 * n for kind, n in SHARES.items()}
+    assert {kind: kinds.count(kind) for kind in SHARES} == {kind: 6 * n for kind, n in SHARES.items()}
 
 
 def read(path: Path) -> list[dict[str, str]]:

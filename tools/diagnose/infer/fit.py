@@ -117,12 +117,8 @@ class _Vector:
 
     def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
         self.nz, self.acting = problem.nz, tuple(acting)
-        low, high, precision, longest = (
-            [np.full(self.nz, -6.0)],
-            [np.full(self.nz, 6.0)],
-            [np.ones(self.nz)],
-            [np.full(self.nz, LONGEST)],
-        )
+        low, high = [np.full(self.nz, -6.0)], [np.full(self.nz, 6.0)]
+        precision, longest = [np.ones(self.nz)], [np.full(self.nz, LONGEST)]
         self.sizes: list[int] = []
         begin = self.nz
         for a in acting:

@@ -6,7 +6,6 @@ A residual is r ~ N(0, V) with V = base + sum of exp(2 s) C over the loose terms
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -27,16 +26,6 @@ LITTLE = 1e-4
 LONGEST = 1.0
 
 
-class _Cost(Protocol):
-    """Minus the log density by scales."""
-
-    def at(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
-        """Value and slopes."""
-
-    def curvature(self, scales: np.ndarray) -> np.ndarray:
-        """Expected second derivatives at the scales that were asked for last."""
-
-
 def most_likely(base: np.ndarray, loose: Sequence[Term], residual: np.ndarray, begun: np.ndarray) -> np.ndarray:
     """Scales of the highest density, priors included.
 
@@ -47,7 +36,7 @@ def most_likely(base: np.ndarray, loose: Sequence[Term], residual: np.ndarray, b
         begun: logarithms where it begins
     """
     few = sum(t.rank for t in loose) < FEW * len(residual)
-    cost: _Cost = (_Few if few else _Many)(base, loose, residual)
+    cost = _Few(base, loose, residual) if few else _Many(base, loose, residual)
     precision = np.array([t.loose for t in loose]) ** -2.0
 
     def at(x: np.ndarray) -> tuple[float, np.ndarray]:

@@ -63,13 +63,8 @@ class Filter:
     def __init__(
         self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
     ) -> None:
-        self.plant, self.knobs, self.given, self.read, self.drift = (
-            plant,
-            tuple(knobs),
-            tuple(given),
-            tuple(read),
-            drift,
-        )
+        self.plant, self.knobs, self.drift = plant, tuple(knobs), drift
+        self.given, self.read = tuple(given), tuple(read)
         #: Scatter of each reading about the model [K] (reads,).
         self.scatter = np.full(len(read), SCATTER)
         self.nx = plant.nx

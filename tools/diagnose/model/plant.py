@@ -195,24 +195,15 @@ def _loaded(text: str) -> ctypes.CDLL:
 
 
 def record(**values: int | np.ndarray) -> Any:
-    """A structure of C with these fields, which keeps its arrays alive.
+    """A structure of C with these fields in this order, which keeps its arrays alive.
 
     Args:
         values: whole numbers, addresses among them, and arrays of eight bytes a number
     """
-    kept = {name: v if isinstance(v, int) else np.ascontiguousarray(v) for name, v in values.items()}
-    made = _structure(tuple((name, isinstance(v, int)) for name, v in kept.items()))()
-    for name, v in kept.items():
-        setattr(made, name, v if isinstance(v, int) else address(v))
-    made.arrays = tuple(kept.values())
+    kept = [v if isinstance(v, int) else np.ascontiguousarray(v) for v in values.values()]
+    made: Any = (ctypes.c_int64 * len(kept))(*(v if isinstance(v, int) else address(v) for v in kept))
+    made.arrays = kept
     return made
-
-
-@cache
-def _structure(fields: tuple[tuple[str, bool], ...]) -> Any:
-    """A structure of named whole numbers and places."""
-    kinds = [(name, ctypes.c_int64 if whole else ctypes.c_void_p) for name, whole in fields]
-    return type("Record", (ctypes.Structure,), {"_fields_": kinds})
 
 
 def _pattern(matrix: Any) -> Pattern:
