@@ -28,6 +28,8 @@ THRESHOLDS = (6, 8)
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Places of a change in the running order at most.
 PLACES = 40
+#: Shapes that say where one side of a quantity begins.
+GATE = ("threshold", "width")
 #: Draws of the alarm's null.
 DRAWS = 500
 
@@ -160,6 +162,18 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)
+
+
+def limited(
+    problem: Problem, near: Look, linear: tuple[White, np.ndarray], formulas: Sequence[Formula], one: Acting
+) -> Screen:
+    """The forms that act on the same side of a quantity as one that acts, from its threshold on; as `screened`."""
+    own = [(k, f) for k, f in enumerate(formulas) if f.form.regime == one.formula.form.regime and f is not one.formula]
+    known = {s.name: u for s, u in zip(one.formula.form.shapes, one.t[1:], strict=True) if s.name in GATE}
+    shapes = ([known.get(s.name, 0.0) for s in f.form.shapes] for _, f in own)
+    candidates = tuple(Acting(f, np.array([0.0, *u])) for (_, f), u in zip(own, shapes, strict=True))
+    effects = problem.tangents(near.z, near.acting, candidates)
+    return Screen.of(candidates, np.array([k for k, _ in own]), effects, linear)
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:

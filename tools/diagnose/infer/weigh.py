@@ -21,7 +21,7 @@ from .fit import Fit, fitted
 from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
-from .screen import Screen, Start, null_draws, screened
+from .screen import Screen, Start, limited, null_draws, screened
 from .terms import ERRORS, Linear, Scatter, TermSet, as_term, gross, remainders, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
@@ -198,8 +198,7 @@ class Weighing:
         problem, J = self.whole, near.look.jacobian
         candidates = zip(look.candidates, self._weights(look), look.effects.T, strict=True)
         terms = [as_term(c, log, effect[:, None]) for c, log, effect in candidates]
-        effects, acting = np.zeros(problem.m), near.look.acting
-        place = problem.nz
+        effects, acting, place = np.zeros(problem.m), near.look.acting, problem.nz
         for a in acting:
             log = self.prior.share[a.id] + np.log(a.formula.form.weight)  # its shapes are fitted, none a sample of many
             terms.append(as_term(a, log, J[:, [place]]))
@@ -261,8 +260,9 @@ class Weighing:
         leader, best = ranked[0]
         acting, gone = best.fit.look.acting, list[tuple[Key, Hypothesis, Acting | Extra | None]]()
         if leader not in self.exchanged:
-            for limited in (a for a in acting if a.formula.form.regime):
-                self._join_all(self._limited(best.fit, limited), leader, best, limited)
+            linear = best.fit.linear(self.problem)
+            for a in (a for a in acting if a.formula.form.regime):
+                self._join_all(limited(self.problem, best.fit.look, linear, self.formulas, a), leader, best, a)
             if len(best.causes) > 1:
                 gone += [*((leader, best, one) for one in acting), *((leader, best, one) for one in best.extras)]
         self.exchanged.add(leader)
@@ -276,16 +276,6 @@ class Weighing:
         look = self.screened(best.fit, self.problem)  # what else acts hardly changes effects
         for key, known, one in gone:
             self._join_all(look, key, known, one)
-
-    def _limited(self, near: Fit, one: Acting) -> Screen:
-        """Other causes that are limited as one of a fit is, at its threshold."""
-        form = one.formula.form
-        known = {s.name: u for s, u in zip(form.shapes, one.t[1:], strict=True) if s.name in ("threshold", "width")}
-        alike = [k for k, f in enumerate(self.formulas) if f.form.regime == form.regime and f is not one.formula]
-        places = [[0.0, *(known.get(s.name, 0.0) for s in self.formulas[k].form.shapes)] for k in alike]
-        candidates = tuple(Acting(self.formulas[k], np.array(t)) for k, t in zip(alike, places, strict=True))
-        effects = self.problem.tangents(near.look.z, near.look.acting, candidates)
-        return Screen.of(candidates, np.array(alike), effects, near.linear(self.problem))
 
     def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
