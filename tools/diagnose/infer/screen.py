@@ -149,31 +149,31 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], formulas: Sequence[Formula]) -> Screen:
+def limited(formulas: Sequence[Formula], one: Acting) -> tuple[tuple[Acting, ...], np.ndarray]:
+    """Candidates of the forms on the same side of a quantity as one that acts, at its threshold, and their owners."""
+    own = [(k, f) for k, f in enumerate(formulas) if f.form.regime == one.formula.form.regime and f is not one.formula]
+    known = {s.name: u for s, u in zip(one.formula.form.shapes, one.t[1:], strict=True) if s.name in GATE}
+    shapes = ([known.get(s.name, 0.0) for s in f.form.shapes] for _, f in own)
+    found = tuple(Acting(f, np.array([0.0, *u])) for (_, f), u in zip(own, shapes, strict=True))
+    return found, np.array([k for k, _ in own])
+
+
+def screened(
+    problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula], one: Acting | None = None
+) -> Screen:
     """What every form would explain beside a fitted hypothesis.
 
     Args:
         problem: data and model
         near: where it was fitted
         linear: whitening by all that is uncertain there, and the residual in it
-        formulas: forms of causes
+        forms: of causes
+        one: only those that are limited as this one that acts is
     """
-    candidates, owner = samples(tuple(formulas), changes(problem))
+    candidates, owner = limited(forms, one) if one else samples(tuple(forms), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)
-
-
-def limited(
-    problem: Problem, near: Look, linear: tuple[White, np.ndarray], formulas: Sequence[Formula], one: Acting
-) -> Screen:
-    """The forms that act on the same side of a quantity as one that acts, from its threshold on; as `screened`."""
-    own = [(k, f) for k, f in enumerate(formulas) if f.form.regime == one.formula.form.regime and f is not one.formula]
-    known = {s.name: u for s, u in zip(one.formula.form.shapes, one.t[1:], strict=True) if s.name in GATE}
-    shapes = ([known.get(s.name, 0.0) for s in f.form.shapes] for _, f in own)
-    candidates = tuple(Acting(f, np.array([0.0, *u])) for (_, f), u in zip(own, shapes, strict=True))
-    effects = problem.tangents(near.z, near.acting, candidates)
-    return Screen.of(candidates, np.array([k for k, _ in own]), effects, linear)
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:

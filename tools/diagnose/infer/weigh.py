@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
+from itertools import chain
 
 import numpy as np
 from scipy.special import chdtrc
@@ -21,7 +23,7 @@ from .fit import Fit, fitted
 from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
-from .screen import Screen, Start, limited, null_draws, screened
+from .screen import Screen, Start, null_draws, screened
 from .terms import ERRORS, Linear, Scatter, TermSet, as_term, gross, remainders, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
@@ -165,9 +167,9 @@ class Weighing:
                 break
         return self._weighed()
 
-    def screened(self, near: Fit, problem: Problem) -> Screen:
-        """What every cause would explain beside a fitted hypothesis."""
-        return screened(problem, near.look, near.linear(problem), self.formulas)
+    def screened(self, near: Fit, problem: Problem, one: Acting | None = None) -> Screen:
+        """What every cause would explain beside a fitted hypothesis, or those that are limited as one of it is."""
+        return screened(problem, near.look, near.linear(problem), self.formulas, one)
 
     def _weights(self, look: Screen) -> np.ndarray:
         """Log prior weight of each candidate, all together 1."""
@@ -254,30 +256,27 @@ class Weighing:
         """Fits the leading set without each of its causes, and with what promises most in its place.
 
         To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none; so
-        what promises most beside the best sets of fewer causes is fitted, too.
+        what promises most beside the best sets of fewer causes is fitted, too. A threshold is hard to find: in place of
+        what acts on one side of it, others that may do so are fitted from there on.
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
-        leader, best = ranked[0]
-        acting, gone = best.fit.look.acting, list[tuple[Key, Hypothesis, Acting | Extra | None]]()
-        if leader not in self.exchanged:
-            linear = best.fit.linear(self.problem)
-            for a in (a for a in acting if a.formula.form.regime):
-                self._join_all(limited(self.problem, best.fit.look, linear, self.formulas, a), leader, best, a)
-            if len(best.causes) > 1:
-                gone += [*((leader, best, one) for one in acting), *((leader, best, one) for one in best.extras)]
+        (leader, best), near = ranked[0], ranked[0][1].fit
+        every = cache(lambda: self.screened(near, self.problem))  # what else acts hardly changes effects
+        ones: tuple[Acting | Extra, ...] = (*near.look.acting, *best.extras)
+        for one in ones if leader not in self.exchanged else ():
+            sided = one if isinstance(one, Acting) and one.formula.form.regime else None
+            looks = [self.screened(near, self.problem, sided)] if sided else []
+            looks += [every()] if len(best.causes) > 1 else []
+            if looks:
+                self._join_all(looks, leader, best, one)
         self.exchanged.add(leader)
-        for n in range(1, len(acting)):
+        for n in range(1, len(near.look.acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
             if key not in self.exchanged:
                 self.exchanged.add(key)
-                gone.append((key, fewer, None))
-        if not gone:
-            return
-        look = self.screened(best.fit, self.problem)  # what else acts hardly changes effects
-        for key, known, one in gone:
-            self._join_all(look, key, known, one)
+                self._join_all([every()], key, fewer, None)
 
-    def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
+    def _join_all(self, looks: Sequence[Screen], key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
         fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
@@ -285,7 +284,8 @@ class Weighing:
             forms = {b.id: known.forms.get(b.id, {}) for b in rest}
             near = self._fit_exactly(problem, rest, fit.look.z, fit.noise.scales, extras, forms) if gone else fit
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
-            for start, logs in self._promising(look.beside(near.linear(problem)), taken, EXCHANGED):
+            linear = near.linear(problem)
+            for start, logs in chain(*(self._promising(look.beside(linear), taken, EXCHANGED) for look in looks)):
                 self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
 
     def _fit_alike(self) -> None:
