@@ -29,7 +29,7 @@ NEAR = 0.02
 #: Hypotheses that share an estimate, as a share.
 COUNTS = 0.01
 #: Standard deviations of a spread that are weighed, in half widths of the prior.
-SPREADS = np.geomspace(0.1, 8.0, 25)
+SPREADS = np.geomspace(0.1, 32.0, 33)
 
 
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 from scipy.linalg.blas import dtrsm
-from scipy.linalg.lapack import dtrtri
+from scipy.linalg.lapack import dpotri
 from scipy.special import ndtr
 
 #: Widths of a size's prior, as multiples of its stated half width. The last one is for what dominates a campaign: a
@@ -47,14 +47,15 @@ class White:
         return np.asarray(dtrsm(1.0, self.L.T, columns, trans_a=turned)).reshape(columns.shape)
 
     @property
-    def root(self) -> np.ndarray:
-        """The upper root W (M, M) of the inverse covariance W W'."""
-        return np.asarray(dtrtri(self.L.T)[0])
+    def upper(self) -> np.ndarray:
+        """The upper triangle of the inverse covariance (M, M), zeros below."""
+        return np.asarray(dpotri(self.L.T)[0])
 
     @property
     def inverse(self) -> np.ndarray:
         """The inverse covariance (M, M)."""
-        return np.asarray((root := self.root) @ root.T)
+        upper = self.upper
+        return np.asarray(upper + upper.T - np.diag(np.diag(upper)))
 
     @property
     def log_det(self) -> float:

@@ -45,8 +45,9 @@ class Extra:
 
     @property
     def log_prior(self) -> float:
-        """Of the cause's form, or of the remainder beside a hypothesis."""
-        return float(np.log(self.of.formula.form.weight)) if self.of.formula else self.of.log_prior
+        """Of the cause's form and one of its widths, or of the remainder beside a hypothesis."""
+        known = self.of.formula
+        return float(np.log(known.form.weight / len(self.of.widths))) if known else self.of.log_prior
 
     @property
     def term(self) -> Term:

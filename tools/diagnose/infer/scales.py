@@ -21,7 +21,7 @@ STEPS = 25
 #: Times one is halved.
 HALVED = 6
 #: What the last one promises of log density.
-LITTLE = 1e-4
+LITTLE = 1e-2
 #: The longest step.
 LONGEST = 1.0
 
@@ -84,26 +84,28 @@ class _Many:
         self.base, self.residual = base, residual
         self.even = np.array([t.variance is not None for t in loose])
         self.columns = [t.effects for t in loose if t.variance is None]
-        self.matrices = [U @ U.T for U in self.columns]
+        #: Covariances of the columns, each as one row, and their diagonals.
+        self.flat = np.array([U @ U.T for U in self.columns]).reshape(len(self.columns), base.size)
+        self.diagonals = self.flat[:, :: len(base) + 1]
         self.variances = np.array([t.variance for t in loose if t.variance is not None])
 
     def at(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
         """Value and slopes."""
         weights, even = np.exp(2 * scales), self.even
-        V = self.base + sum(w * C for w, C in zip(weights[~even], self.matrices, strict=True))
+        V = self.base + (weights[~even] @ self.flat).reshape(self.base.shape)
         V[np.diag_indices(len(V))] += weights[even] @ self.variances
-        white = White.of(V)
-        self.root = root = white.root
-        a = root @ (root.T @ self.residual)
+        self.white = white = White.of(V)
+        upper, a = white.upper, white.back(self.residual)
         value = 0.5 * self.residual @ a + 0.5 * white.log_det
         slopes = np.zeros(len(scales))
-        slopes[even] = self.variances @ ((root**2).sum(axis=1) - a**2)
-        slopes[~even] = [((root.T @ U) ** 2).sum() - ((a @ U) ** 2).sum() for U in self.columns]
+        slopes[even] = self.variances @ (np.diag(upper) - a**2)
+        slopes[~even] = 2 * self.flat @ upper.T.ravel() - self.diagonals @ np.diag(upper)
+        slopes[~even] -= [((a @ U) ** 2).sum() for U in self.columns]
         return float(value), weights * slopes
 
     def curvature(self, scales: np.ndarray) -> np.ndarray:
         """Expected second derivatives at the scales that were asked for last."""
-        even, inverse, own = self.even, self.root @ self.root.T, self.variances
+        even, inverse, own = self.even, self.white.inverse, self.variances
         found = np.zeros((len(even), len(even)))
         found[np.ix_(even, even)] = own @ inverse**2 @ own.T
         if self.columns:

@@ -14,7 +14,7 @@ from .prior import GROSS, OUTSIDE, Prior
 from .problem import PACES, Acting, Aside, Look, Noise, Problem
 
 #: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
-SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
+SPREADS = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0])
 #: Standard deviations of a remainder, in those of one reading of its channel.
 REMAINDERS = np.array([2.0, 4.0, 8.0, 16.0])
 #: Standard deviations of a gross reading's error, in those of one reading.
@@ -32,7 +32,7 @@ class Term:
     Attributes:
         name: id of the cause, or what stands for it: "T_oil 17", "remainder T_oil"
         family: terms of one family count as one answer, and one of them acts at a time
-        log_prior: of the cause, its form and its sample of shapes together
+        log_prior: of the cause, its form and its sample of shapes together; of what scatters, of one of its widths
         columns: effect of one unit of it (M, k); k = 1 for a size
         widths: standard deviations of its prior, all as likely
         low, high: bounds of a size
@@ -85,8 +85,8 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
         if np.count_nonzero(columns, axis=0).max() < 2 or not np.isfinite(columns).all():
             continue  # one reading each: that is its own scatter
         cause = formula.cause
-        log = prior.share[cause.id] + float(np.log(formula.form.weight))
         widths = SPREADS[SPREADS >= 1] if formula.paced else SPREADS  # less shows less than in proportion
+        log = prior.share[cause.id] + float(np.log(formula.form.weight / len(widths)))
         beside = ", anew" if formula.form.spread == "mounting" else ""  # it may have a size besides
         yield Term(cause.id, cause.family + beside, log, columns, widths, formula=formula, passing=passing)
 
@@ -118,7 +118,7 @@ def remainders(problem: Problem) -> Iterator[Term]:
     kernels = [("smooth in the conditions", problem.alike, groups)]
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
         kernels.append((BY_TEST, tests[:, None] == tests, [g for g in groups if len(g) > 1]))
-    log = float(np.log(OUTSIDE) - np.log(sum(len(places) for _, _, places in kernels)))
+    log = float(np.log(OUTSIDE) - np.log(len(REMAINDERS) * sum(len(places) for _, _, places in kernels)))
     for name, kernel, places in kernels:
         variance, vectors = np.linalg.eigh(kernel * problem.same)
         kept = variance > FAINT * variance[-1]
