@@ -47,15 +47,10 @@ class White:
         return np.asarray(dtrsm(1.0, self.L.T, columns, trans_a=turned)).reshape(columns.shape)
 
     @property
-    def upper(self) -> np.ndarray:
-        """The upper triangle of the inverse covariance (M, M), zeros below."""
-        return np.asarray(dpotri(self.L.T)[0])
-
-    @property
     def inverse(self) -> np.ndarray:
         """The inverse covariance (M, M)."""
-        upper = self.upper
-        return np.asarray(upper + upper.T - np.diag(np.diag(upper)))
+        upper = np.asarray(dpotri(self.L.T)[0])
+        return np.asarray(upper + np.triu(upper, 1).T)
 
     @property
     def log_det(self) -> float:

@@ -19,7 +19,7 @@ STEPS = 12
 #: Tries of each with more damping.
 TRIES = 5
 #: Gain in log likelihood that the last step brings or a further one promises.
-LITTLE = 0.05
+LITTLE = 0.2
 #: The share of what was promised that a step must bring if the next one is to be damped less.
 TRUSTED = 0.7
 #: Rounds of point and scatter in turn at most.

@@ -84,9 +84,8 @@ class _Many:
         self.base, self.residual = base, residual
         self.even = np.array([t.variance is not None for t in loose])
         self.columns = [t.effects for t in loose if t.variance is None]
-        #: Covariances of the columns, each as one row, and their diagonals.
+        #: Covariances of the columns, each as one row.
         self.flat = np.array([U @ U.T for U in self.columns]).reshape(len(self.columns), base.size)
-        self.diagonals = self.flat[:, :: len(base) + 1]
         self.variances = np.array([t.variance for t in loose if t.variance is not None])
 
     def at(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
@@ -94,18 +93,16 @@ class _Many:
         weights, even = np.exp(2 * scales), self.even
         V = self.base + (weights[~even] @ self.flat).reshape(self.base.shape)
         V[np.diag_indices(len(V))] += weights[even] @ self.variances
-        self.white = white = White.of(V)
-        upper, a = white.upper, white.back(self.residual)
+        white = White.of(V)
+        self.inverse, a = white.inverse, white.back(self.residual)
         value = 0.5 * self.residual @ a + 0.5 * white.log_det
-        slopes = np.zeros(len(scales))
-        slopes[even] = self.variances @ (np.diag(upper) - a**2)
-        slopes[~even] = 2 * self.flat @ upper.T.ravel() - self.diagonals @ np.diag(upper)
-        slopes[~even] -= [((a @ U) ** 2).sum() for U in self.columns]
+        left, slopes = self.inverse - np.outer(a, a), np.zeros(len(scales))
+        slopes[even], slopes[~even] = self.variances @ np.diag(left), self.flat @ left.ravel()
         return float(value), weights * slopes
 
     def curvature(self, scales: np.ndarray) -> np.ndarray:
         """Expected second derivatives at the scales that were asked for last."""
-        even, inverse, own = self.even, self.white.inverse, self.variances
+        even, inverse, own = self.even, self.inverse, self.variances
         found = np.zeros((len(even), len(even)))
         found[np.ix_(even, even)] = own @ inverse**2 @ own.T
         if self.columns:
