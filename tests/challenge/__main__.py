@@ -19,6 +19,7 @@ from gearheat.tools.show import console
 
 from .bench import RULES, run, tasks
 from .hide import KINDS
+from .machines import KINDS as OF_MACHINES
 from .names import names
 from .printing import show
 from .scoring import Outcome, report
@@ -55,8 +56,10 @@ def challenge(
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []
-    if only is not None and only not in (*KINDS, "several"):
-        problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
+    for name in POOLED if sheet == "all" else (sheet,):
+        kinds = OF_MACHINES if name == "machines" else KINDS
+        if only and name in MAKERS and only not in kinds:
+            problems.append(f'challenge: {name} has no "{only}".{suggestion(only, kinds)} Kinds: {", ".join(kinds)}.')
     if off and off not in RULES:
         problems.append(f'challenge: unknown rule "{off}".{suggestion(off, RULES)} Rules: {", ".join(RULES)}.')
     if n < 1:

@@ -32,6 +32,8 @@ from scipy.linalg import block_diag
 from .classes import classes_of
 from .new_rig import CHANGES, as_shown
 
+#: Kinds of cases.
+KINDS = ("clean", "single", "several")
 #: Stages of a unit, and lowest and highest ratio of each of them.
 STAGES: Mapping[str, tuple[float, float]] = {
     "helical": (2.0, 4.5),
@@ -280,12 +282,12 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
         number: of the sheet
         seed, k: of the challenge, and number of the case
         folder: for the files; made if need be
-        kind: "clean", "single" or "several"; drawn if left out
+        kind: one of `KINDS`; drawn if left out
     """
     case, rng = folder / "case", np.random.default_rng([seed, number, k])
     case.mkdir(parents=True, exist_ok=True)
     share = rng.random()
-    kind = kind or ("clean" if share < CLEAN else "single" if share < CLEAN + SINGLE else "several")
+    kind = kind or KINDS[int(share >= CLEAN) + int(share >= CLEAN + SINGLE)]
     while True:
         try:
             plate = _write_rig(case / "machine.toml", rng)
