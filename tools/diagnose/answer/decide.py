@@ -192,13 +192,13 @@ def _join(found: Found, chances: _Chances) -> list[Joint]:
         mine = np.array([k == key for k in keys])
         members = [(found.hypotheses[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)]
         best = max(members, key=lambda m: m[1])[0]
-        classes = tuple(_class(c, members, found) for c in _named(best))
+        classes = tuple(_class(c, best, members, found) for c in _named(best))
         joints.append(Joint(key, _named(best), classes, chances.of(mine), best))
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 
-def _class(cause: str, members: Sequence[Member], found: Found) -> tuple[str, ...]:
-    """The members of a cause's class among some hypotheses, the cause first."""
+def _class(cause: str, best: Hypothesis, members: Sequence[Member], found: Found) -> tuple[str, ...]:
+    """The members of a cause's class among some hypotheses, the cause first; none that acts beside it in the best."""
     family = {f.cause.id: f.cause.family for f in found.formulas}
     shares: dict[str, float] = {}
     for h, p in members:
@@ -206,7 +206,7 @@ def _class(cause: str, members: Sequence[Member], found: Found) -> tuple[str, ..
             if family[c] == family.get(cause):
                 shares[c] = shares.get(c, 0.0) + p
     least = MEMBER * sum(shares.values())
-    others = sorted((c for c in shares if c != cause and shares[c] > least), key=lambda c: -shares[c])
+    others = sorted((c for c in shares if c not in best.causes and shares[c] > least), key=lambda c: -shares[c])
     return (cause, *others)
 
 
