@@ -113,6 +113,21 @@ def test_a_cause_is_the_answer_whether_or_not_another_acts_beside_it(wrong: tupl
     assert decision.joints[0].chance.probability == pytest.approx(0.6)
 
 
+def test_what_acts_beside_a_cause_is_no_other_name_for_it(wrong: tuple[Setting, Found]) -> None:
+    found, other = wrong[1], "sensor.oil_temp.drift"
+    one_class = {c: SimpleNamespace(id=c, family="error") for c in (TRUE, other)}
+    formulas = [SimpleNamespace(cause=one_class.get(f.cause.id, f.cause)) for f in found.formulas]
+    first, *rest = found.hypotheses
+    hypotheses = (
+        replace(first, causes=(TRUE, other)),
+        *(replace(h, causes=(other, TRUE)) for h in rest[:1]),
+        *rest[1:],
+    )
+    share = [0.5, 0.4, *(0.1 * (not h.causes and not h.extras) for h in rest[1:])]
+    told = replace(found, formulas=formulas, hypotheses=hypotheses, probabilities=np.array(share))
+    assert decide(told).joints[0].classes == ((TRUE,), (other,))
+
+
 def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
     decision = decide(clean[1])
     assert decision.verdict == "consistent"
