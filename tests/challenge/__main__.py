@@ -58,7 +58,7 @@ def challenge(
     problems = []
     for name in POOLED if sheet == "all" else (sheet,):
         kinds = OF_MACHINES if name == "machines" else KINDS
-        if only and name in MAKERS and only not in kinds:
+        if only and only not in kinds:
             problems.append(f'challenge: {name} has no "{only}".{suggestion(only, kinds)} Kinds: {", ".join(kinds)}.')
     if off and off not in RULES:
         problems.append(f'challenge: unknown rule "{off}".{suggestion(off, RULES)} Rules: {", ".join(RULES)}.')

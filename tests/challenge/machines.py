@@ -287,7 +287,7 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
     case, rng = folder / "case", np.random.default_rng([seed, number, k])
     case.mkdir(parents=True, exist_ok=True)
     share = rng.random()
-    kind = kind or KINDS[int(share >= CLEAN) + int(share >= CLEAN + SINGLE)]
+    kind = kind or ("clean" if share < CLEAN else "single" if share < CLEAN + SINGLE else "several")
     while True:
         try:
             plate = _write_rig(case / "machine.toml", rng)

@@ -431,6 +431,7 @@ def test_command_refuses_what_it_cannot_do(tmp_path: Path) -> None:
     for words, said in (
         (["--sheet", "own", "--only", "claen"], 'Did you mean "clean"'),
         (["--sheet", "machines", "--only", "severe"], "Kinds: clean, single, several."),
+        (["--sheet", "practice", "--only", "claen", "--practice", str(tmp_path)], 'Did you mean "clean"'),
         (["--sheet", "own", "--n", "0"], "at least one case"),
         (["--sheet", "own", "--off", "exchang"], 'Did you mean "exchange"'),
         (["--sheet", "practice"], "--practice FOLDER"),
