@@ -34,7 +34,7 @@ def test_evidence_of_one_size_is_the_integral_over_it(seed: int, low: float, hig
     rng = np.random.default_rng(seed)
     e, g = rng.normal(size=8), rng.normal(size=8)
     exact = np.log(integral(e, g, low, high))
-    bounds = np.array([low]), np.array([high])
+    bounds = np.array([low]), np.array([high]), WIDTHS[:, None]
     assert log_bayes_factor(g[:, None], e, *bounds) == pytest.approx(exact, abs=1e-5)
     assert log_bayes_factors(np.array([g @ e]), np.array([g @ g]), *bounds)[0] == pytest.approx(exact, abs=1e-5)
 
@@ -47,13 +47,13 @@ def test_evidence_of_two_sizes_is_the_integral_over_both() -> None:
     likelihood = np.exp(places @ (G.T @ e) - 0.5 * np.einsum("abi,ij,abj->ab", places, G.T @ G, places))
     priors = [norm(scale=width).pdf(t) for width in WIDTHS]
     found = [(a @ likelihood @ b) * (t[1] - t[0]) ** 2 for a in priors for b in priors]
-    bounds = np.full(2, -50.0), np.full(2, 50.0)
+    bounds = np.full(2, -50.0), np.full(2, 50.0), np.column_stack([WIDTHS, WIDTHS])
     assert log_bayes_factor(G, e, *bounds) == pytest.approx(np.log(np.mean(found)), abs=1e-3)
 
 
 def test_a_cause_that_is_not_there_costs_and_one_that_is_gains() -> None:
     g = np.full(20, 1.0)
-    wide = np.array([-50.0]), np.array([50.0])
+    wide = np.array([-50.0]), np.array([50.0]), WIDTHS[:, None]
     assert log_bayes_factor(g[:, None], np.zeros(20), *wide) < -0.5
     assert log_bayes_factor(g[:, None], 2 * g, *wide) > 20
 

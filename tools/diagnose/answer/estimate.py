@@ -12,7 +12,7 @@ from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.fit import Fit, prior_precision
 from ..infer.found import Found, Hypothesis, Member
-from ..infer.problem import Acting, Problem, limits
+from ..infer.problem import Acting, Problem, limits, widths
 from ..library.cause import Form, Shape, Size
 from ..model.observe import Observed
 from . import channels, findings
@@ -252,7 +252,7 @@ def find_detectable(found: Found) -> dict[str, float]:
 
     def seen(size: np.ndarray) -> np.ndarray:
         s = sign * (size * q - ndtri(POWER) * np.sqrt(q))
-        return np.asarray(log_bayes_factors(s, q, low, high) > needed)
+        return np.asarray(log_bayes_factors(s, q, low, high, widths(candidates)) > needed)
 
     known = seen(above)
     for _ in range(30):

@@ -11,7 +11,7 @@ from ....model.core.faults import name_all
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found, Hypothesis
-from ..infer.problem import limits
+from ..infer.problem import limits, widths
 from . import channels
 from .estimate import loose_variance
 from .evidence import Picture, Rows, View
@@ -106,7 +106,7 @@ def views(found: Found) -> tuple[View, ...]:
     kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
     share = found.prior.share
     weights = first.weights + [share[c.id] for c in first.candidates]
-    low, high = limits(first.candidates)
+    prior = *limits(first.candidates), widths(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
     for i in kinds if len(kinds) > 1 else ():
@@ -118,7 +118,7 @@ def views(found: Found) -> tuple[View, ...]:
         deviation = r[mine] - tie.T @ given(r[~mine])
         effects = white(first.effects[mine] - tie.T @ given(first.effects[~mine]))
         left = white(deviation)
-        logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), low, high)
+        logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), *prior)
         total = np.logaddexp.reduce([np.logaddexp.reduce(logs), found.critical])
         chances = {c: float(np.exp(np.logaddexp.reduce(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
         ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])

@@ -17,6 +17,8 @@ from scipy.special import ndtr
 #: Widths of a size's prior, as multiples of its stated half width. The last one is for what dominates a campaign: a
 #: dead fan, a seal that seizes. Without it two causes share such an effect.
 WIDTHS = np.array([0.5, 1.5, 4.5, 13.5])
+#: Those of an instrument's error: a fan may be dead, a probe is not that wrong.
+INSTRUMENT = np.array([0.5, 1.0, 2.0, 4.0])
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class White:
 
 
 def log_bayes_factors(
-    s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray = WIDTHS
+    s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray
 ) -> np.ndarray:
     """Log Bayes factors of k signatures against none, each alone.
 
@@ -71,7 +73,7 @@ def log_bayes_factors(
         s: signature times residual (..., k)
         q: squared length of the signature (k,)
         low, high: bounds of the size (k,)
-        widths: standard deviations of the size's prior, all as likely
+        widths: standard deviations of the size's prior, all as likely (w, k)
     """
     logs, inside = by_width(s, q, low, high, widths)
     return averaged(logs, inside, prior_mass(low, high, widths))
@@ -81,14 +83,14 @@ def by_width(
     s: np.ndarray | float, q: np.ndarray | float, low: np.ndarray, high: np.ndarray, widths: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The same at each width (w, ..., k): without bounds, and the share of the posterior that lies inside them."""
-    v = widths.reshape(-1, *[1] * np.ndim(s)) ** 2
+    v = widths.reshape(len(widths), *[1] * (np.ndim(s) - widths.ndim + 1), *widths.shape[1:]) ** 2
     post = v / (1 + v * q)
     return 0.5 * s**2 * post - 0.5 * np.log1p(v * q), mass_inside(post * s, np.sqrt(post), low, high)
 
 
 def prior_mass(low: np.ndarray, high: np.ndarray, widths: np.ndarray) -> np.ndarray:
     """Share of the prior inside the bounds at each width (w, k)."""
-    return mass_inside(0.0, widths[:, None], low, high)
+    return mass_inside(0.0, widths.reshape(len(widths), -1), low, high)
 
 
 def averaged(logs: np.ndarray, inside: np.ndarray, prior: np.ndarray) -> np.ndarray:
@@ -98,16 +100,17 @@ def averaged(logs: np.ndarray, inside: np.ndarray, prior: np.ndarray) -> np.ndar
     return np.asarray(most + np.log(whole.mean(axis=0)))
 
 
-def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:
+def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray) -> float:
     """Log Bayes factor of several signatures together against none.
 
     Args:
         g: whitened signatures (M, k)
         e: whitened residual (M,)
         low, high: bounds of the sizes (k,)
+        widths: standard deviations of their priors, all as likely (w, k)
     """
     A, b = g.T @ g, g.T @ e
-    each = np.array(list(product(WIDTHS, repeat=len(b))))
+    each = np.array(list(product(*widths.T)))
     D, eye = each[:, None, :] ** 2, np.eye(len(b))
     C = np.linalg.inv(A + eye / D)
     mean, sd = C @ b, np.sqrt(np.diagonal(C, axis1=1, axis2=2))

@@ -11,8 +11,8 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ....model.errors import SolveError
-from .evidence import WIDTHS, White, log_bayes_factor
-from .problem import Acting, Look, Noise, Problem
+from .evidence import White, log_bayes_factor
+from .problem import Acting, Look, Noise, Problem, widths
 
 #: Steps at most.
 STEPS = 12
@@ -126,7 +126,7 @@ class _Vector:
             low.append(a_low)
             high.append(a_high)
             n = a.formula.size - 1
-            precision.append(np.r_[1 / WIDTHS[-1] ** 2, np.ones(n)])
+            precision.append(np.r_[1 / a.widths[-1] ** 2, np.ones(n)])
             longest.append(np.r_[LONGEST_SIZE, np.full(n, LONGEST_SHAPE)])
             self.sizes.append(begin)
             begin += 1 + n
@@ -246,12 +246,14 @@ class _Line:
         self.known, self.G = known @ known.T, J[:, vector.sizes]
         self.residual = problem.measured - look.shown + J @ look.x
         self.low, self.high = vector.low[vector.sizes], vector.high[vector.sizes]
+        self.widths = widths(look.acting)
 
     def scattered(self, noise: Noise) -> Noise:
         """The scatter here with its most likely scales, from those of a scatter."""
         sizes = self.look.x[self.vector.sizes]
-        free = self.G[:, (sizes > self.low) & (sizes < self.high)]  # one that stands at its bound explains nothing more
-        wide = self.known + WIDTHS[-1] ** 2 * free @ free.T
+        free = (sizes > self.low) & (sizes < self.high)  # one that stands at its bound explains nothing more
+        columns = (self.widths[-1] * self.G)[:, free]
+        wide = self.known + columns @ columns.T
         return self.problem.noise(self.look, noise.scales).fitted(self.residual, wide)
 
     def weighed(self, noise: Noise, cost: float) -> Fit:
@@ -263,11 +265,11 @@ class _Line:
             return Fit(look, noise, cost, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
         effects = self._effects()
         rough = _rough(self.problem, effects)
-        logs = []
+        logs, prior = [], (self.low, self.high, self.widths)
         for share, weight in FORM:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
-            logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
+            logs.append(white.log_density(e) + log_bayes_factor(g, e, *prior) + np.log(weight))
         form, short = FORM[int(np.argmax(logs))][0], self._short(noise)
         evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
         return Fit(look, noise, cost, evidence, form, effects, short)

@@ -16,6 +16,7 @@ from ..model.entries import Seen, Term, summed
 from ..model.formula import Formula
 from ..model.noise import alike, by_name, input_scatter, terms
 from ..model.observe import Observed
+from .evidence import INSTRUMENT, WIDTHS
 from .scales import most_likely
 
 #: Shapes stay inside so many deviations.
@@ -54,6 +55,11 @@ class Acting:
         far = np.full(self.formula.size - 1, FAR)
         return np.r_[low, -far], np.r_[high, far]
 
+    @property
+    def widths(self) -> np.ndarray:
+        """Standard deviations of the size's prior, all as likely (w,)."""
+        return INSTRUMENT if self.formula.instrument else WIDTHS
+
     def started(self, size: float) -> Acting:
         """The same where its fit begins: not too near to zero, inside its bounds."""
         low, high = self.formula.limits
@@ -65,6 +71,11 @@ def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest sizes of candidates, in prior half widths (k,)."""
     low, high = np.array([c.formula.limits for c in candidates]).reshape(-1, 2).T
     return low, high
+
+
+def widths(candidates: Sequence[Acting]) -> np.ndarray:
+    """Standard deviations of the priors of their sizes (w, k)."""
+    return np.array([c.widths for c in candidates]).reshape(-1, len(WIDTHS)).T
 
 
 @dataclass(frozen=True)

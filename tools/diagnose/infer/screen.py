@@ -13,7 +13,7 @@ from scipy.special import ndtri
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import White, log_bayes_factors
-from .problem import PACES, Acting, Look, Problem, limits
+from .problem import PACES, Acting, Look, Problem, limits, widths
 
 #: Start points of a form for its first shape, beside the one in the middle.
 FIRST = 3
@@ -70,7 +70,7 @@ class Screen:
         white, e = linear
         g, (low, high) = white(effects), limits(candidates)
         s, q = g.T @ e, (g**2).sum(axis=0)
-        log_bf = log_bayes_factors(s, q, low, high)
+        log_bf = log_bayes_factors(s, q, low, high, widths(candidates))
         return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), low, high))
 
     def beside(self, linear: tuple[White, np.ndarray]) -> Screen:
@@ -185,5 +185,6 @@ def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
         seed: of the draws
     """
     e = np.random.default_rng(seed).standard_normal((len(found.white), DRAWS))
-    logs = log_bayes_factors((found.white.T @ e).T, (found.white**2).sum(axis=0), *limits(found.candidates))
+    own, q = found.candidates, (found.white**2).sum(axis=0)
+    logs = log_bayes_factors((found.white.T @ e).T, q, *limits(own), widths(own))
     return np.asarray(np.logaddexp.reduce(logs + weights, axis=1))

@@ -61,14 +61,16 @@ class Table:
         self.codes = np.array(
             [np.unique(words, return_inverse=True)[1] for words in (names, self.kinds, self.families)]
         )
-        gross = np.array([t.aside is not None for t in own])
+        widths: dict[tuple[float, ...], list[int]] = {}
+        for k, t in enumerate(own):
+            widths.setdefault(tuple(t.widths), []).append(k)
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
         self.groups = []
-        for k in (np.flatnonzero(group) for group in (~gross, gross) if group.any()):
-            widths = own[int(k[0])].widths
-            prior = prior_mass(self.low[k], self.high[k], widths)
-            self.groups.append((k, widths, prior, -np.log(prior.min(axis=0))))
+        for tried, own_numbers in widths.items():
+            numbers, w = np.array(own_numbers), np.array(tried)
+            prior = prior_mass(self.low[numbers], self.high[numbers], w)
+            self.groups.append((numbers, w, prior, -np.log(prior.min(axis=0))))
 
     def named(self, members: Sequence[int]) -> list[str]:
         """The causes of a set, each once."""

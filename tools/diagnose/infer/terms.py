@@ -9,7 +9,6 @@ import numpy as np
 
 from ..model.formula import Formula
 from ..model.noise import per_group, walk
-from .evidence import WIDTHS
 from .prior import GROSS, OUTSIDE, Prior
 from .problem import PACES, Acting, Aside, Look, Noise, Problem
 
@@ -71,7 +70,7 @@ def as_term(acting: Acting, log_prior: float, column: np.ndarray) -> Term:
     """A form of a cause that acts, or may."""
     formula = acting.formula
     cause = formula.cause
-    return Term(cause.id, cause.family, float(log_prior), column, WIDTHS, *formula.limits, acting, formula)
+    return Term(cause.id, cause.family, float(log_prior), column, acting.widths, *formula.limits, acting, formula)
 
 
 def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:

@@ -83,6 +83,11 @@ class Formula:
         return self._base.names
 
     @property
+    def instrument(self) -> bool:
+        """Whether it changes what is shown, and nothing of the machine."""
+        return not (self.paths or self.paced)
+
+    @property
     def size(self) -> int:
         """Number of parameters."""
         return int(self.t.numel())
