@@ -219,11 +219,11 @@ def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
 
 
 def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
-    """A look where the fit begins, with smaller causes where it cannot be run."""
+    """A look where the fit begins, nearer to the file where it cannot be run there."""
     for share in (1.0, 0.5, 0.2, 0.05):
         try:
             smaller = [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting]
-            return problem.look(z, smaller)
+            return problem.look(share * z, smaller)
         except SolveError:
             if share == 0.05 or not acting:
                 raise

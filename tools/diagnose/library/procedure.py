@@ -41,13 +41,11 @@ def not_stationary(at: Context) -> Cause:
 
         return of
 
-    forms = []
-    for minutes, words in ((False, ""), (True, "by minutes")):
-        for name, (first, later, weight) in HALVES.items():
-            known = ", ".join(filter(None, (words, name)))
-            forms.append(Form(known, weight / 3, pace=pace(first, later, minutes)))
-    forms.append(Form("at random", 1 / 3, pace=pace(1.0, 1.0, False), spread="test"))
-    return entry("procedure.not_stationary", at).with_forms(forms)
+    return entry("procedure.not_stationary", at).with_forms(
+        Form(", ".join(filter(None, (words, half))), w / 3, pace=pace(first, later, minutes), spread=spread)
+        for words, minutes, spread in (("", False, ""), ("by minutes", True, ""), ("at random", False, "test"))
+        for half, (first, later, w) in HALVES.items()
+    )
 
 
 def order(at: Context) -> Cause:
