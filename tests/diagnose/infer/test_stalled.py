@@ -14,7 +14,7 @@ from gearheat.tools.diagnose.infer.problem import Acting
 
 #: Effects of one nuisance and of a size on five readings; the size at which its effect turns back.
 BY_Z, BY_T, TURNS = np.array([1.0, 0.5, 0.0, 0.3, -0.2]), np.array([0.5, 1.0, 1.5, 1.0, 0.4]), 1.5
-FORMULA: Any = SimpleNamespace(size=1, cause=SimpleNamespace(id="cause"), limits=(-50.0, 50.0), instrument=False)
+FORMULA: Any = SimpleNamespace(size=1, cause=SimpleNamespace(id="cause"), limits=(-50.0, 50.0), paths=("",))
 NOISE: Any = SimpleNamespace(covariance=np.eye(5), log_prior=0.0)
 
 

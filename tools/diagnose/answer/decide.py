@@ -11,7 +11,7 @@ from scipy.special import chdtrc
 from ..infer.evidence import White
 from ..infer.found import Found, Hypothesis, Member
 from ..infer.prior import OUTSIDE
-from ..infer.problem import limits
+from ..infer.problem import priors
 from .findings import UNEXPLAINED, Verdict
 
 #: Probability from which one answer explains the data, and that several together reach.
@@ -137,7 +137,7 @@ def temper(found: Found) -> Found:
 def invisible(found: Found) -> set[str]:
     """Causes of which no form shows in these data at the largest size that it can have."""
     candidates = found.first.candidates
-    low, high = limits(candidates)
+    low, high, _ = priors(candidates)
     far = np.maximum(-low, high) * np.linalg.norm(found.first.white, axis=0) >= INVISIBLE
     return {c.id for c in candidates} - {c.id for c, shows in zip(candidates, far, strict=True) if shows}
 

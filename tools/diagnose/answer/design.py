@@ -12,7 +12,7 @@ from scipy.linalg import block_diag
 
 from ..infer.evidence import White
 from ..infer.found import Found
-from ..infer.problem import Acting, Look, Noise, Problem, limits
+from ..infer.problem import Acting, Look, Noise, Problem, priors
 from ..model.entries import Seen
 from ..model.noise import terms
 from ..model.observe import Observed
@@ -54,7 +54,7 @@ class Effects:
     @cached_property
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest sizes (k,), in half widths of the priors."""
-        return limits(self.candidates)
+        return priors(self.candidates)[:2]
 
     def visible(self, cause: str) -> float:
         """Distance of a cause from none, at a half width of its prior."""

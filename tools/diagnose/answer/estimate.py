@@ -12,7 +12,7 @@ from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.fit import Fit, prior_precision
 from ..infer.found import Found, Hypothesis, Member
-from ..infer.problem import Acting, Problem, limits, widths
+from ..infer.problem import Acting, Problem, priors
 from ..library.cause import Form, Shape, Size
 from ..model.observe import Observed
 from . import channels, findings
@@ -245,14 +245,14 @@ def find_detectable(found: Found) -> dict[str, float]:
     places_of = list(first.values())
     candidates = [found.first.candidates[k] for k in places_of]
     q = (found.first.white[:, places_of] ** 2).sum(axis=0)
-    low, high = limits(candidates)
+    low, high, widths = priors(candidates)
     needed = np.array([found.critical - share[c.id] for c in candidates])
     sign = np.where(high > 0, 1.0, -1.0)
     below, above = np.zeros(len(q)), np.where(sign > 0, high, -low)
 
     def seen(size: np.ndarray) -> np.ndarray:
         s = sign * (size * q - ndtri(POWER) * np.sqrt(q))
-        return np.asarray(log_bayes_factors(s, q, low, high, widths(candidates)) > needed)
+        return np.asarray(log_bayes_factors(s, q, low, high, widths) > needed)
 
     known = seen(above)
     for _ in range(30):

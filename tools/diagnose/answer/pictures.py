@@ -11,7 +11,7 @@ from ....model.core.faults import name_all
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found, Hypothesis
-from ..infer.problem import limits, widths
+from ..infer.problem import priors
 from . import channels
 from .estimate import loose_variance
 from .evidence import Picture, Rows, View
@@ -106,7 +106,7 @@ def views(found: Found) -> tuple[View, ...]:
     kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
     share = found.prior.share
     weights = first.weights + [share[c.id] for c in first.candidates]
-    prior = *limits(first.candidates), widths(first.candidates)
+    prior = priors(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
     for i in kinds if len(kinds) > 1 else ():

@@ -38,13 +38,10 @@ def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run."""
     o = _observed(found, points)
     nominal = _predicted(found.problem, found.null, o)
-    weights: dict[int, float] = {}
-    fits = {id(h.fit.look): h.fit for h in reversed(found.hypotheses)}
-    for h, p in zip(found.hypotheses, found.probabilities, strict=True):
-        weights[id(h.fit.look)] = weights.get(id(h.fit.look), 0.0) + float(p)
-    counted = {key: w for key, w in weights.items() if w > COUNTS} or {id(found.hypotheses[0].fit.look): 1.0}
-    tables = np.array([_predicted(found.problem, fits[key], o) for key in counted])
-    w = np.array(list(counted.values()))[:, None, None] * np.isfinite(tables)
+    counted = [(h.fit, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
+    counted = counted or [(found.hypotheses[0].fit, 1.0)]
+    tables = np.array([_predicted(found.problem, fit, o) for fit, _ in counted])
+    w = np.array([p for _, p in counted])[:, None, None] * np.isfinite(tables)
     total = w.sum(axis=0)
     mean = (w * np.nan_to_num(tables)).sum(axis=0) / np.where(total > 0, total, 1.0)
     return nominal, np.where(total > 0, mean, nominal)

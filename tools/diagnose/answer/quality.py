@@ -50,19 +50,16 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     """All readings that were set aside, by what a hypothesis says of them."""
     problem, told = found.problem, []
     for aside, size_sd in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
-        k, name = problem.source(aside)
-        o, expected = problem.campaigns[k], None
-        row = aside.number - sum(c.campaign.n if aside.sensor else c.m for c in problem.campaigns[:k])
+        o, row, name = problem.source(aside)
+        campaign, s, expected = o.campaign, o.campaign.sensor(name), None
         if not aside.sensor:
-            row = int(o.row[row])
-            expected = float(channels.in_unit(o.campaign.sensor(name), h.fit.look.shown[aside.number]))
-        campaign, s = o.campaign, o.campaign.sensor(name)
+            row, expected = int(o.row[row]), float(channels.in_unit(s, h.fit.look.shown[aside.number]))
         line = int(campaign.lines[row])
         told.append(
             GrossReading(
                 row=line - 1,
                 line=line,
-                point=f"{int(campaign.points[row])}{f' of {campaign.name}' if k else ''}",
+                point=f"{int(campaign.points[row])}{'' if o is problem.data else f' of {campaign.name}'}",
                 channel=name,
                 size_sd=size_sd,
                 shown=float(channels.in_unit(s, campaign.values[name][row])),

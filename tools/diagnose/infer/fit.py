@@ -12,7 +12,7 @@ from scipy.optimize import lsq_linear
 
 from ....model.errors import SolveError
 from .evidence import White, log_bayes_factor
-from .problem import Acting, Look, Noise, Problem, widths
+from .problem import Acting, Look, Noise, Problem, priors
 
 #: Steps at most.
 STEPS = 12
@@ -245,8 +245,7 @@ class _Line:
         known = J[:, np.r_[np.arange(vector.nz), vector.shapes]]
         self.known, self.G = known @ known.T, J[:, vector.sizes]
         self.residual = problem.measured - look.shown + J @ look.x
-        self.low, self.high = vector.low[vector.sizes], vector.high[vector.sizes]
-        self.widths = widths(look.acting)
+        self.low, self.high, self.widths = self.prior = priors(look.acting)
 
     def scattered(self, noise: Noise) -> Noise:
         """The scatter here with its most likely scales, from those of a scatter."""
@@ -265,11 +264,11 @@ class _Line:
             return Fit(look, noise, cost, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
         effects = self._effects()
         rough = _rough(self.problem, effects)
-        logs, prior = [], (self.low, self.high, self.widths)
+        logs = []
         for share, weight in FORM:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
-            logs.append(white.log_density(e) + log_bayes_factor(g, e, *prior) + np.log(weight))
+            logs.append(white.log_density(e) + log_bayes_factor(g, e, *self.prior) + np.log(weight))
         form, short = FORM[int(np.argmax(logs))][0], self._short(noise)
         evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
         return Fit(look, noise, cost, evidence, form, effects, short)

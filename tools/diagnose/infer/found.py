@@ -44,12 +44,6 @@ class Extra:
         return self.of.formula.form.name if self.of.formula else self.of.name
 
     @property
-    def log_prior(self) -> float:
-        """Of the cause's form and one of its widths, or of the remainder beside a hypothesis."""
-        known = self.of.formula
-        return float(np.log(known.form.weight / len(self.of.widths))) if known else self.of.log_prior
-
-    @property
     def term(self) -> Term:
         """Its covariance."""
         passing = None if self.of.passing is None else self.size * self.of.passing

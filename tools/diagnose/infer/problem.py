@@ -58,7 +58,7 @@ class Acting:
     @property
     def widths(self) -> np.ndarray:
         """Standard deviations of the size's prior, all as likely (w,)."""
-        return INSTRUMENT if self.formula.instrument else WIDTHS
+        return WIDTHS if self.formula.paths or self.formula.paced else INSTRUMENT
 
     def started(self, size: float) -> Acting:
         """The same where its fit begins: not too near to zero, inside its bounds."""
@@ -67,15 +67,10 @@ class Acting:
         return replace(self, t=np.r_[size if abs(size) > 0.1 else least, self.t[1:]])
 
 
-def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest sizes of candidates, in prior half widths (k,)."""
+def priors(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of sizes in prior half widths: lowest and highest (k,), and standard deviations, all as likely (w, k)."""
     low, high = np.array([c.formula.limits for c in candidates]).reshape(-1, 2).T
-    return low, high
-
-
-def widths(candidates: Sequence[Acting]) -> np.ndarray:
-    """Standard deviations of the priors of their sizes (w, k)."""
-    return np.array([c.widths for c in candidates]).reshape(-1, len(WIDTHS)).T
+    return low, high, np.array([c.widths for c in candidates]).reshape(-1, len(WIDTHS)).T
 
 
 @dataclass(frozen=True)
@@ -267,12 +262,12 @@ class Problem:
         parts = [(name, k, columns) for k, (o, seen) in pairs for name, columns in input_scatter(o, seen)]
         return list(by_name(parts, [o.m for o in self.campaigns]).items())
 
-    def source(self, aside: Aside) -> tuple[int, str]:
-        """Number of the campaign and the sensor that a reading is of."""
+    def source(self, aside: Aside) -> tuple[Observed, int, str]:
+        """The campaign that a reading is of, its number there, and its sensor."""
         sizes = [o.campaign.n if aside.sensor else o.m for o in self.campaigns]
         k = int(np.searchsorted(np.cumsum(sizes), aside.number, side="right"))
         o, number = self.campaigns[k], aside.number - sum(sizes[:k])
-        return k, aside.sensor or o.read[o.kind[number]].name
+        return o, number, aside.sensor or o.read[o.kind[number]].name
 
     def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
         """Effects (M, k) of one prior half width of each candidate beside what acts.

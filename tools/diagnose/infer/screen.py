@@ -13,7 +13,7 @@ from scipy.special import ndtri
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import White, log_bayes_factors
-from .problem import PACES, Acting, Look, Problem, limits, widths
+from .problem import PACES, Acting, Look, Problem, priors
 
 #: Start points of a form for its first shape, beside the one in the middle.
 FIRST = 3
@@ -68,10 +68,10 @@ class Screen:
     ) -> Screen:
         """By whitening and the residual in it."""
         white, e = linear
-        g, (low, high) = white(effects), limits(candidates)
+        g, prior = white(effects), priors(candidates)
         s, q = g.T @ e, (g**2).sum(axis=0)
-        log_bf = log_bayes_factors(s, q, low, high, widths(candidates))
-        return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), low, high))
+        log_bf = log_bayes_factors(s, q, *prior)
+        return Screen(candidates, owner, effects, g, log_bf, np.clip(s / (q + 0.1), *prior[:2]))
 
     def beside(self, linear: tuple[White, np.ndarray]) -> Screen:
         """What the same effects would explain beside another hypothesis."""
@@ -185,6 +185,5 @@ def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
         seed: of the draws
     """
     e = np.random.default_rng(seed).standard_normal((len(found.white), DRAWS))
-    own, q = found.candidates, (found.white**2).sum(axis=0)
-    logs = log_bayes_factors((found.white.T @ e).T, q, *limits(own), widths(own))
+    logs = log_bayes_factors((found.white.T @ e).T, (found.white**2).sum(axis=0), *priors(found.candidates))
     return np.asarray(np.logaddexp.reduce(logs + weights, axis=1))

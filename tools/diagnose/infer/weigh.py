@@ -373,7 +373,7 @@ class Weighing:
         acting = [a.formula for a in fit.look.acting]
         causes = tuple(dict.fromkeys([*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause)]))
         log = fit.evidence + sum(float(np.log(f.form.weight)) for f in acting)
-        log += sum(e.log_prior for e in extras)
+        log += sum(e.of.log_prior - self.prior.share.get(e.of.name, 0.0) for e in extras)  # the prior has the share
         log += self.prior(causes) if causes else self.critical
         log += len(key[2] - self.whole.aside) * float(np.log(GROSS * Problem.FAR / ERRORS[1]))
         if key not in self.hypotheses or log > self.hypotheses[key].log_joint:

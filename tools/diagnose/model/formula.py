@@ -83,11 +83,6 @@ class Formula:
         return self._base.names
 
     @property
-    def instrument(self) -> bool:
-        """Whether it changes what is shown, and nothing of the machine."""
-        return not (self.paths or self.paced)
-
-    @property
     def size(self) -> int:
         """Number of parameters."""
         return int(self.t.numel())
