@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.library.cause import Row, as_array
+from gearheat.tools.diagnose.library.probes import BODY
 
 ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
 DIRECTION = np.array([1.0, -1.0] * 3)
@@ -133,8 +134,10 @@ def test_a_frozen_probe_shows_the_same_from_one_test_on(planetary):
 def test_a_probe_drawn_to_the_room_loses_a_share_of_its_excess(planetary):
     c = planetary
     cause = c.cause("sensor.oil_temp.position")
-    wrong = shown(c, cause, form_of(cause, "T_oil", "towards T_amb"), 0.1, a=0.0)["T_oil"]
+    wrong = shown(c, cause, form_of(cause, "T_oil"), 0.1, a=0.0, body=0.0)["T_oil"]
     assert wrong == pytest.approx(np.full(6, -0.1 * (c.ranges.mid["T_oil"] - c.ranges.mid["T_amb"])))
+    beside = shown(c, cause, form_of(cause, "T_oil"), 0.1, a=0.0, body=1.0)["T_oil"]
+    assert beside == pytest.approx(np.full(6, -0.1 * BODY * (c.ranges.mid["T_oil"] - c.ranges.mid["T_wall"])))
 
 
 def test_a_room_probe_in_the_warm_air_reads_the_more_too_high_the_warmer_the_machine(planetary):

@@ -50,29 +50,25 @@ def one_of(sensor: Sensor, own: Sequence[Sensor]) -> str:
 
 def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     """Oil probes that see something between the oil and the room, or the oil and a body."""
-    others = [(s, 1.0) for s in at.sensors if s.kind == "ambient"][:1]
-    others += [(s, BODY) for s in at.sensors if s.kind == "wall_temp" and s.role == "read"][:1]
-    read = [s for s in own if s.role == "read"]
-    known = entry("sensor.oil_temp.position", at)
-    shapes, forms = known.shapes if at.first("speed") else (), []
-    for probe in read:
-        for other, more in others:
-            name = ", ".join(filter(None, (one_of(probe, read), f"towards {other.name}")))
-            weight = (1.0 if len(others) == 1 else 0.6 if more == 1.0 else 0.4) / len(read)
-            forms.append(Form(name, weight, shapes, shown=_drawn(at, probe, other, more)))
-    if forms:
-        yield known.with_forms(forms)
+    room = next((s for s in at.sensors if s.kind == "ambient"), None)
+    wall = next((s for s in at.sensors if s.kind == "wall_temp" and s.role == "read"), None)
+    read, known = [s for s in own if s.role == "read"], entry("sensor.oil_temp.position", at)
+    needs = {"a": bool(at.first("speed")), "body": room is not None and wall is not None}
 
+    def drawn(probe: Sensor) -> Callable[[Theta, Row, Values], Values]:
+        def shown(theta: Theta, row: Row, true: Values) -> Values:
+            oil, body, left = true[probe.name], theta.get("body", float(room is None)), 0.0
+            if room is not None:
+                left += (1 - body) * (oil - (row.sensors if room.role == "given" else true)[room.name])
+            if wall is not None:
+                left += BODY * body * (oil - true[wall.name])
+            return {probe.name: oil - theta["share"] * at.by_speed(row, theta, "a") * left}
 
-def _drawn(at: Context, probe: Sensor, other: Sensor, more: float) -> Callable[[Theta, Row, Values], Values]:
-    """What a probe shows that is drawn towards what another reads."""
+        return shown
 
-    def shown(theta: Theta, row: Row, true: Values) -> Values:
-        place = row.sensors[other.name] if other.role == "given" else true[other.name]
-        share = more * theta["share"] * at.by_speed(row, theta, "a")
-        return {probe.name: true[probe.name] - share * (true[probe.name] - place)}
-
-    return shown
+    if read and (room or wall):
+        shapes = tuple(shape for shape in known.shapes if needs[shape.name])
+        yield known.with_forms(Form(one_of(s, read), 1 / len(read), shapes, shown=drawn(s)) for s in read)
 
 
 def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
