@@ -36,7 +36,7 @@ SLOW = 0.05
 LEAST_SPAN = 5.0
 #: No more places than these have forms of their own.
 MOST_PLACES = 6
-WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 3.0, 1.0, 0.75)
+WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 5.0, 1.0, 1.25)
 #: How gradually something sets in with the running order, which goes from 0 to 1.
 ORDER_STEP = 0.02
 PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
