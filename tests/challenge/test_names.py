@@ -21,15 +21,15 @@ def test_the_page_is_made_from_what_was_stored() -> None:
 
 
 def test_the_cooler_is_named_and_sized() -> None:
-    """By all thermometers; with two it leads, with one it stands in a set; the gain is held out."""
+    """By all thermometers, and by two; with one it stands in a set; the gain is held out."""
     cooler, alone, pair = (BY[f"cooler at 3 %{words}"] for words in ("", ", TS1 alone", ", TS3 and TS4"))
     low, high = np.exp(cooler["size"]["ci95"])
     assert low < SHARE < high
     assert high / low < 1.25 / 0.75
     assert cooler["after"] <= 1.0 < cooler["before"]
-    assert all(result["first"] and not result["false"] for result in (cooler, pair))
-    assert cooler["verdict"] == "explained" and cooler["answers"][0]["probability"] > 0.9
-    assert sum(a["probability"] for a in pair["answers"] if "cooling.cooler" in a["causes"]) > 0.8
+    for result in (cooler, pair):
+        assert result["first"] and not result["false"]
+        assert result["verdict"] == "explained" and result["answers"][0]["probability"] > 0.9
     named = {cause for a in alone["answers"] if a["probability"] > 0.1 for cause in a["causes"]}
     others = {"losses.pump_power", "losses.windage", "heat.external_source", "sensor.oil_temp.offset"}
     assert named == {"cooling.cooler", "sensor.ambient.bias"} | others
