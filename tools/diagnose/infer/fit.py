@@ -245,13 +245,13 @@ class _Line:
         known = J[:, np.r_[np.arange(vector.nz), vector.shapes]]
         self.known, self.G = known @ known.T, J[:, vector.sizes]
         self.residual = problem.measured - look.shown + J @ look.x
-        self.low, self.high, self.widths = self.prior = priors(look.acting)
+        self.prior = low, high, _ = priors(look.acting)
+        sizes = look.x[vector.sizes]
+        self.free = (sizes > low) & (sizes < high)  # one that stands at its bound explains nothing more
 
     def scattered(self, noise: Noise) -> Noise:
         """The scatter here with its most likely scales, from those of a scatter."""
-        sizes = self.look.x[self.vector.sizes]
-        free = (sizes > self.low) & (sizes < self.high)  # one that stands at its bound explains nothing more
-        columns = (self.widths[-1] * self.G)[:, free]
+        columns = (self.prior[2][-1] * self.G)[:, self.free]
         wide = self.known + columns @ columns.T
         return self.problem.noise(self.look, noise.scales).fitted(self.residual, wide)
 
@@ -287,7 +287,7 @@ class _Line:
         """What the slopes promise of log likelihood beyond here, 0 where that is little; sizes stay at their bounds."""
         vector, white, x = self.vector, White.of(noise.covariance), self.look.x
         free = np.ones(len(x), dtype=bool)
-        free[vector.sizes] = (x[vector.sizes] > self.low) & (x[vector.sizes] < self.high)
+        free[vector.sizes] = self.free
         J = white(self.look.jacobian)
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(self.problem.measured - self.look.shown) - vector.precision * x

@@ -43,13 +43,14 @@ class Table:
         self.linear, self.n = linear, linear.n
         own = linear.terms[: self.n]
         self.columns = np.concatenate([t.columns for t in own], axis=1)
-        alike: dict[tuple[int, tuple[float, ...]], list[int]] = {}
-        for number, t in enumerate(linear.terms[self.n :], self.n):
-            alike.setdefault((t.columns.shape[1], tuple(t.widths)), []).append(number)
+        alike: dict[tuple[bool, int, tuple[float, ...]], list[int]] = {}
+        for number, t in enumerate(linear.terms):
+            alike.setdefault((t.scatters, t.columns.shape[1], tuple(t.widths)), []).append(number)
         #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
         self.scatters = [
             (numbers, np.array(widths), np.concatenate([linear.terms[k].columns for k in numbers], axis=1))
-            for (_, widths), numbers in alike.items()
+            for (scatters, _, widths), numbers in alike.items()
+            if scatters
         ]
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
@@ -61,16 +62,14 @@ class Table:
         self.codes = np.array(
             [np.unique(words, return_inverse=True)[1] for words in (names, self.kinds, self.families)]
         )
-        widths: dict[tuple[float, ...], list[int]] = {}
-        for k, t in enumerate(own):
-            widths.setdefault(tuple(t.widths), []).append(k)
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
         self.groups = []
-        for tried, own_numbers in widths.items():
-            numbers, w = np.array(own_numbers), np.array(tried)
-            prior = prior_mass(self.low[numbers], self.high[numbers], w)
-            self.groups.append((numbers, w, prior, -np.log(prior.min(axis=0))))
+        for (scatters, _, widths), numbers in alike.items():
+            if not scatters:
+                k, tried = np.array(numbers), np.array(widths)
+                prior = prior_mass(self.low[k], self.high[k], tried)
+                self.groups.append((k, tried, prior, -np.log(prior.min(axis=0))))
 
     def named(self, members: Sequence[int]) -> list[str]:
         """The causes of a set, each once."""

@@ -53,7 +53,7 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     room = next((s for s in at.sensors if s.kind == "ambient"), None)
     wall = next((s for s in at.sensors if s.kind == "wall_temp" and s.role == "read"), None)
     read, known = [s for s in own if s.role == "read"], entry("sensor.oil_temp.position", at)
-    needs = {"a": bool(at.first("speed")), "body": room is not None and wall is not None}
+    needs = {"a": at.first("speed"), "body": room and wall}
 
     def drawn(probe: Sensor) -> Callable[[Theta, Row, Values], Values]:
         def shown(theta: Theta, row: Row, true: Values) -> Values:
