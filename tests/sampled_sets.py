@@ -103,12 +103,16 @@ class Sampler:
 
 
 def gain(term: Term, columns: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """Log Bayes factor of a term at each of its widths, those being as likely; columns (M, k) and residual whitened."""
+    """Log Bayes factor of a term at each of its widths, a size's with their shares; all is whitened.
+
+    Columns are (M, k). The prior of what scatters is that of one of its widths.
+    """
     q, turn = np.linalg.eigh(columns.T @ columns)
     s, q, v = turn.T @ (columns.T @ e), np.maximum(q, 0.0), np.asarray(term.widths)[:, None] ** 2
     post = v / (1 + v * q)
-    logs = (0.5 * s**2 * post - 0.5 * np.log1p(v * q)).sum(axis=1) - np.log(len(v))
+    logs = (0.5 * s**2 * post - 0.5 * np.log1p(v * q)).sum(axis=1)
     if not term.scatters:
+        logs -= np.log(len(v))
         logs += log_inside(term, post @ turn[0] * s, np.sqrt(post[:, 0])) - log_inside(term, 0 * logs, term.widths)
     return np.asarray(logs)
 
