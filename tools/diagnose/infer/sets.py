@@ -27,8 +27,8 @@ KEPT = 30
 ALIKE = 3
 #: Nats behind the likeliest at which a set or a scatter is no longer looked at.
 WINDOW = 7.0
-#: Scatters looked at.
-SCATTERS = 8
+#: Scatters looked at after the one with the likeliest set.
+SCATTERS = 4
 #: Rounds of choosing the widths of a set's members in turn.
 ROUNDS = 2
 
@@ -221,24 +221,20 @@ class Whitened:
                 yield -float(logs[k]), (*members, k), (*widths, float(at[k]))
 
     def scatters(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
-        """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
+        """Scatters nearby, and the log joint density there of what is left of a set: less, more, others.
 
         Left of the set are all members, none, or all but those of one family or instrument that a scatter may replace.
         What is one more and comes to less than the least is left out.
         """
-        sides, scales, table = self.scatter.beside, self.scatter.scales, self.table
+        sides, table = self.scatter.beside, self.table
         groups = [table.kinds[k] or table.families[k] for k in own.members]
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
-            near = self if beside == sides else Whitened(table, Scatter(scales, beside), self.plain)
+            near = self if beside == sides else Whitened(table, Scatter(self.scatter.scales, beside), self.plain)
             for kept in dict.fromkeys([*left, ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
                 yield from near._further(base, least)
-        linear, columns = table.linear, table.linear.sized(own.wide)
-        found = linear.at(scales).fitted(linear.residual, linear.known + columns @ columns.T).scales
-        if np.abs(np.subtract(found, scales)).max(initial=0.0) > 0.05:
-            yield own.log + 1.0, Scatter(tuple(np.round(found, 3)), sides), own
 
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -290,33 +286,38 @@ def search(
         linear: the problem
         begun: scatters to begin with
         progress: told the share done
-        scatters: looked at, at most
+        scatters: looked at after the one with the likeliest set
     """
     table, found = Table(linear), dict[tuple[int, ...], TermSet]()
     queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]] = []
     for k, own in enumerate(begun):
         heapq.heappush(queue, (-np.inf, k, own, ()))
-    seen, best, number = set[Scatter](), -np.inf, len(begun)
+    seen, best, number, later = set[Scatter](), -np.inf, len(begun), 0
 
     @lru_cache(maxsize=1)  # scatters that follow each other mostly have the same scales
     def plain(scales: tuple[float, ...]) -> Whitened:
         return Whitened(table, Scatter(scales))
 
-    while queue and len(seen) < scatters:
+    while queue and later < scatters:
         promise, _, scatter, starts = heapq.heappop(queue)
-        if scatter in seen or -promise < best - WINDOW:
+        if -promise < best - WINDOW:
             continue
-        seen.add(scatter)
-        progress(len(seen) / scatters)
+        if starts:
+            scatter = linear.rescaled(scatter, starts[0].sized)
+        if scatter.alike in seen:
+            continue
+        seen.add(scatter.alike)
         alone = plain(scatter.scales)
         white = Whitened(table, scatter, alone) if scatter.beside else alone
         sets = white.search(starts, LOOKS[bool(starts)])
         for s in sets:
             if s.terms not in found or found[s.terms].log < s.log:
                 found[s.terms] = s
+        later = 0 if sets[0].log > best else later + 1
         best = max(best, sets[0].log)
+        progress(len(seen) / (len(seen) + scatters - later))
         for log, other, base in white.scatters(sets[0], best - WINDOW):
-            if other not in seen and log > best - WINDOW:
+            if log > best - WINDOW:
                 number += 1
                 heapq.heappush(queue, (-log, number, other, (base, *sets[:2])))
     return sorted(found.values(), key=lambda s: (-s.log, s.terms))

@@ -20,6 +20,8 @@ REMAINDERS = np.array([2.0, 4.0, 8.0, 16.0])
 ERRORS = np.array([6.0, 15.0, 40.0])
 #: What a remainder is that differs from test to test.
 BY_TEST = "from test to test"
+#: Logarithms of scales that differ by less are the same.
+SCALE = 0.1
 #: Shares of the largest variance of a remainder below which its directions are left out.
 FAINT = 0.01
 
@@ -153,6 +155,11 @@ class Scatter:
     scales: tuple[float, ...]
     beside: tuple[tuple[int, float], ...] = ()
 
+    @property
+    def alike(self) -> Scatter:
+        """The same for all scatters with nearly these scales."""
+        return replace(self, scales=tuple(np.round(self.scales, 1).tolist()))
+
 
 @dataclass(frozen=True)
 class TermSet:
@@ -216,6 +223,13 @@ class Linear:
     def at(self, scales: Sequence[float]) -> Noise:
         """The scatter with some scales."""
         return replace(self.noise, scales=np.array(scales))
+
+    def rescaled(self, scatter: Scatter, sized: Sequence[tuple[int, float]]) -> Scatter:
+        """A scatter with its likeliest scales beside sizes of some widths, where they are others."""
+        columns = self.sized((*sized, *scatter.beside))
+        found = self.at(scatter.scales).fitted(self.residual, self.known + columns @ columns.T).scales
+        scales = np.where(np.abs(found - scatter.scales) > SCALE, found, scatter.scales)
+        return replace(scatter, scales=tuple(scales.tolist()))
 
     def covariance(self, scales: Sequence[float], beside: Iterable[tuple[int, float]] = ()) -> np.ndarray:
         """Of the residual with some scales, beside terms of some widths (M, M)."""
