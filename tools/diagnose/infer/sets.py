@@ -231,7 +231,7 @@ class Whitened:
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
             near = self if beside == sides else Whitened(table, Scatter(self.scatter.scales, beside), self.plain)
-            for kept in dict.fromkeys([*left, ()]):
+            for kept in dict.fromkeys([*(left if near is self else left[:1]), ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
                 yield from near._further(base, least)
@@ -300,13 +300,14 @@ def search(
 
     while queue and later < scatters:
         promise, _, scatter, starts = heapq.heappop(queue)
-        if -promise < best - WINDOW:
-            continue
-        if starts:
-            scatter = linear.rescaled(scatter, starts[0].sized)
-        if scatter.alike in seen:
+        if -promise < best - WINDOW or scatter.alike in seen:
             continue
         seen.add(scatter.alike)
+        if starts and (other := linear.rescaled(scatter, starts[0].sized)) != scatter:
+            if other.alike in seen:
+                continue
+            seen.add(other.alike)
+            scatter = other
         alone = plain(scatter.scales)
         white = Whitened(table, scatter, alone) if scatter.beside else alone
         sets = white.search(starts, LOOKS[bool(starts)])
