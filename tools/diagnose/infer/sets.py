@@ -20,7 +20,7 @@ from .terms import Linear, Scatter, TermSet
 #: Sizes that may act together, gross readings among them.
 MOST = 12
 #: Sets beside which all sizes are weighed, in the first scatters and in further ones.
-LOOKS = (40, 15)
+LOOKS = (20, 8)
 #: Neighbours kept of each.
 KEPT = 30
 #: Of one family.
@@ -221,7 +221,7 @@ class Whitened:
                 yield -float(logs[k]), (*members, k), (*widths, float(at[k]))
 
     def scatters(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
-        """Scatters nearby, and the log joint density there of what is left of a set: less, more, others.
+        """Scatters nearby, and the log joint density there of what is left of a set: less, more, others, other scales.
 
         Left of the set are all members, none, or all but those of one family or instrument that a scatter may replace.
         What is one more and comes to less than the least is left out.
@@ -235,6 +235,7 @@ class Whitened:
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
                 yield from near._further(base, least)
+        yield own.log, table.linear.rescaled(self.scatter, own.sized), own
 
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
