@@ -20,7 +20,7 @@ from .terms import Linear, Scatter, TermSet
 #: Sizes that may act together, gross readings among them.
 MOST = 12
 #: Sets beside which all sizes are weighed, in the first scatters and in further ones.
-LOOKS = (20, 8)
+LOOKS = (40, 15)
 #: Neighbours kept of each.
 KEPT = 30
 #: Of one family.
