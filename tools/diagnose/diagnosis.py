@@ -178,7 +178,6 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = simulate_design(
-        problem, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value)
-    )
+    experiments = list_experiments(campaign, made.nominal.value)
+    found = simulate_design(problem, look, noise, some, effects[:, places], experiments)
     return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

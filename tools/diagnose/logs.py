@@ -103,13 +103,9 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     data = read_logs(inputs)
     check(data)
     known = fleet(
-        inputs.scenario,
-        data.reference,
-        data.siblings,
-        data.logs[0],
-        lambda stage, share: progress(stage, 0.02 + 0.4 * share),
+        inputs.scenario, data.reference, data.siblings, data.logs[0], lambda stage, p: progress(stage, 0.02 + 0.4 * p)
     )
-    asked = question(known, data.logs, lambda stage, share: progress(stage, 0.42 + 0.2 * share))
+    asked = question(known, data.logs, lambda stage, p: progress(stage, 0.42 + 0.2 * p))
     return composed(inputs, known, asked, data, progress)
 
 

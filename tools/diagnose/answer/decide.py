@@ -90,7 +90,8 @@ def decide(found: Found) -> Decision:
     verdict: Verdict = "consistent"
     answers: list[Joint] = []
     if chances.nothing < 0.5 and wrong:
-        first = _whatever_else(wrong[0], found, chances)
+        acts = np.array([{*wrong[0].key} <= {*key} for key in answer_keys(found)])
+        first = replace(wrong[0], chance=chances.of(acts))  # whether or not others act as well
         sure = first.chance.probability > SURE
         verdict = "unexplained" if first.causes == (UNEXPLAINED,) else "explained" if sure else "ambiguous"
         total = np.cumsum([j.chance.probability for j in wrong])
@@ -105,11 +106,6 @@ def decide(found: Found) -> Decision:
     whole = {c: tuple(own) for c, own in members.items()}
     adequacy = p_adequacy(found, leader)
     return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
-
-
-def _whatever_else(joint: Joint, found: Found, chances: _Chances) -> Joint:
-    """The same causes with the chance that they act, whether or not others act as well."""
-    return replace(joint, chance=chances.of(np.array([{*joint.key} <= {*key} for key in answer_keys(found)])))
 
 
 def temper(found: Found) -> Found:

@@ -77,18 +77,14 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
     plant = Plant(spec.flat(), paths, [s.reads for s in log.given], [s.reads for s in log.read])
-    own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
-    noise = []
-    for q in plant.flat.states:
-        body = q.name.rpartition(".")[2] == "T"
-        noise.append(0.0 if q.unit != "K" else QUIET if body else SWITCH)
-    own.drift = np.array(noise)
-    return own, found
+    states = ((q.unit, q.name.rpartition(".")[2]) for q in plant.flat.states)
+    noise = np.array([0.0 if unit != "K" else QUIET if name == "T" else SWITCH for unit, name in states])
+    return Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], noise), found
 
 
-def _within(progress: Progress, stage: str, begin: float, width: float) -> Callable[[float], None]:
-    """Progress of one pass among several."""
-    return lambda share: progress(stage, begin + width * share)
+def _pass(progress: Progress, logs: str, n: int) -> Callable[[float], None]:
+    """Progress of one pass over some logs."""
+    return lambda share: progress(f"{logs}, pass {n + 1} of {PASSES}", (n + share) / PASSES)
 
 
 def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
@@ -117,7 +113,6 @@ def fleet(
     """
     own, found = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
-    machine_of_log = [0] * len(reference) + [1 + i for i in range(len(siblings))]
     sd = np.array([k.sd for k in found])
     machines = 1 + len(siblings)
     begun = first_levels(sd, machines)
@@ -125,15 +120,14 @@ def fleet(
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
         return Fleet(own, found, empty, begun, 0.0)
     past = windows(logs, own.given, own.read)
-    machine = np.array(machine_of_log)[past.machine]
+    machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
     z = np.zeros((machines, len(sd)))
     for n in range(PASSES):
         at = z[machine]
-        stage = f"healthy logs, pass {n + 1} of {PASSES}"
-        passed = own.run(past, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
+        passed = own.run(past, at, progress=_pass(progress, "healthy logs", n))
         own.scatter = _scatter(own, passed)
         said = _quadratics(passed, at)
         if n + 1 < PASSES:
@@ -201,8 +195,7 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     at, sd = np.tile(levels.mean[0], (len(season), 1)), np.array([k.sd for k in found.knobs])
     wide = np.linalg.inv(levels.covariance[0] + levels.season + np.diag(sd**2))
     for n in range(PASSES):
-        stage = f"logs in question, pass {n + 1} of {PASSES}"
-        passed = own.run(data, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
+        passed = own.run(data, at, progress=_pass(progress, "logs in question", n))
         told = _quadratics(passed, at)
         if n + 1 < PASSES:
             by_season = told.spread(levels.window).summed(season, int(season.max()) + 1)

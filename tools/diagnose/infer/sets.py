@@ -10,6 +10,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
+from itertools import count
 
 import numpy as np
 
@@ -212,12 +213,12 @@ class Whitened:
         prior = self.table.log_priors(kept)[: self.table.n]
         gains, at = self.gains(turned, b, best - WINDOW - whole - prior)
         logs = whole + gains + prior
-        count: dict[str, int] = {}
+        taken: dict[str, int] = {}
         able = np.flatnonzero(logs > best - WINDOW)
         for k in able[np.argsort(-logs[able], kind="stable")][: 2 * KEPT].tolist():
             family = str(self.table.families[k])
-            if count.get(family, 0) < ALIKE:
-                count[family] = count.get(family, 0) + 1
+            if taken.get(family, 0) < ALIKE:
+                taken[family] = taken.get(family, 0) + 1
                 yield -float(logs[k]), (*members, k), (*widths, float(at[k]))
 
     def scatters(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
@@ -290,10 +291,9 @@ def search(
         scatters: looked at after the one with the likeliest set
     """
     table, found = Table(linear), dict[tuple[int, ...], TermSet]()
-    queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]] = []
-    for k, own in enumerate(begun):
-        heapq.heappush(queue, (-np.inf, k, own, ()))
-    seen, best, number, later = set[Scatter](), -np.inf, len(begun), 0
+    seen, best, number, later = set[Scatter](), -np.inf, count(), 0
+    queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]]
+    queue = [(-np.inf, next(number), own, ()) for own in begun]
 
     @lru_cache(maxsize=1)  # scatters that follow each other mostly have the same scales
     def plain(scales: tuple[float, ...]) -> Whitened:
@@ -320,6 +320,5 @@ def search(
         progress(len(seen) / (len(seen) + scatters - later))
         for log, other, base in white.scatters(sets[0], best - WINDOW):
             if log > best - WINDOW:
-                number += 1
-                heapq.heappush(queue, (-log, number, other, (base, *sets[:2])))
+                heapq.heappush(queue, (-log, next(number), other, (base, *sets[:2])))
     return sorted(found.values(), key=lambda s: (-s.log, s.terms))
