@@ -28,8 +28,6 @@ THRESHOLDS = (6, 8)
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Places of a change in the running order at most.
 PLACES = 40
-#: Shapes that say where one side of a quantity begins.
-GATE = ("threshold", "width")
 #: Draws of the alarm's null.
 DRAWS = 500
 
@@ -149,18 +147,7 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def limited(formulas: Sequence[Formula], one: Acting) -> tuple[tuple[Acting, ...], np.ndarray]:
-    """Candidates of the forms on the same side of a quantity as one that acts, at its threshold, and their owners."""
-    own = [(k, f) for k, f in enumerate(formulas) if f.form.regime == one.formula.form.regime and f is not one.formula]
-    known = {s.name: u for s, u in zip(one.formula.form.shapes, one.t[1:], strict=True) if s.name in GATE}
-    shapes = ([known.get(s.name, 0.0) for s in f.form.shapes] for _, f in own)
-    found = tuple(Acting(f, np.array([0.0, *u])) for (_, f), u in zip(own, shapes, strict=True))
-    return found, np.array([k for k, _ in own])
-
-
-def screened(
-    problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula], one: Acting | None = None
-) -> Screen:
+def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
     """What every form would explain beside a fitted hypothesis.
 
     Args:
@@ -168,9 +155,8 @@ def screened(
         near: where it was fitted
         linear: whitening by all that is uncertain there, and the residual in it
         forms: of causes
-        one: only those that are limited as this one that acts is
     """
-    candidates, owner = limited(forms, one) if one else samples(tuple(forms), changes(problem))
+    candidates, owner = samples(tuple(forms), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)

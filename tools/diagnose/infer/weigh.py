@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
-from itertools import chain
 
 import numpy as np
 from scipy.special import chdtrc
@@ -167,9 +165,9 @@ class Weighing:
                 break
         return self._weighed()
 
-    def screened(self, near: Fit, problem: Problem, one: Acting | None = None) -> Screen:
-        """What every cause would explain beside a fitted hypothesis, or those that are limited as one of it is."""
-        return screened(problem, near.look, near.linear(problem), self.formulas, one)
+    def screened(self, near: Fit, problem: Problem) -> Screen:
+        """What every cause would explain beside a fitted hypothesis."""
+        return screened(problem, near.look, near.linear(problem), self.formulas)
 
     def _weights(self, look: Screen) -> np.ndarray:
         """Log prior weight of each candidate, all together 1."""
@@ -253,30 +251,27 @@ class Weighing:
                     yield look.start(i), logs
 
     def _exchange(self) -> None:
-        """Fits the leading set without each of its causes, and with what promises most in its place.
+        """Fits the leading set without each of what acts in it, and with what promises most in its place.
 
         To first order a large effect tells its cause by the samples of its shapes, and the right one may fit none; so
-        what promises most beside the best sets of fewer causes is fitted, too. A threshold is hard to find: in place of
-        what acts on one side of it, others that may do so are fitted from there on.
+        what promises most beside the best sets of fewer causes is fitted, too.
         """
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
-        (leader, best), near = ranked[0], ranked[0][1].fit
-        every = cache(lambda: self.screened(near, self.problem))  # what else acts hardly changes effects
-        ones: tuple[Acting | Extra, ...] = (*near.look.acting, *best.extras)
-        for one in ones if leader not in self.exchanged else ():
-            sided = one if isinstance(one, Acting) and one.formula.form.regime else None
-            looks = [self.screened(near, self.problem, sided)] if sided else []
-            looks += [every()] if len(best.causes) > 1 else []
-            if looks:
-                self._join_all(looks, leader, best, one)
+        (leader, best), acting = ranked[0], ranked[0][1].fit.look.acting
+        joins: list[tuple[Key, Hypothesis, Acting | Extra | None]] = []
+        if leader not in self.exchanged and len(best.causes) > 1:
+            joins = [*((leader, best, a) for a in acting), *((leader, best, e) for e in best.extras)]
         self.exchanged.add(leader)
-        for n in range(1, len(near.look.acting)):
+        for n in range(1, len(acting)):
             key, fewer = next((item for item in ranked if len(item[1].fit.look.acting) == n), ranked[0])
             if key not in self.exchanged:
                 self.exchanged.add(key)
-                self._join_all([every()], key, fewer, None)
+                joins.append((key, fewer, None))
+        look = self.screened(best.fit, self.problem) if joins else self.first  # what else acts hardly changes effects
+        for join in joins:
+            self._join_all(look, *join)
 
-    def _join_all(self, looks: Sequence[Screen], key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
+    def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
         fit, extras = known.fit, tuple(e for e in known.extras if e is not gone)
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
@@ -284,8 +279,7 @@ class Weighing:
             forms = {b.id: known.forms.get(b.id, {}) for b in rest}
             near = self._fit_exactly(problem, rest, fit.look.z, fit.noise.scales, extras, forms) if gone else fit
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
-            linear = near.linear(problem)
-            for start, logs in chain(*(self._promising(look.beside(linear), taken, EXCHANGED) for look in looks)):
+            for start, logs in self._promising(look.beside(near.linear(problem)), taken, EXCHANGED):
                 self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
 
     def _fit_alike(self) -> None:
