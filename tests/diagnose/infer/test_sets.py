@@ -142,6 +142,16 @@ def test_one_more_scatter_counts_as_where_it_whitens() -> None:
         assert log - own.log == pytest.approx(density(scatter) - density(own.scatter) + prior, abs=1e-9)
 
 
+def test_scatters_are_added_as_long_as_sets_become_likelier() -> None:
+    blocks = np.kron(np.eye(10), np.ones((4, 1)))
+    problem = linear(
+        noise(4) + 4.0 * blocks.sum(axis=1),
+        [Term(f"s{k}", f"s{k}", -1.0, blocks[:, [k]], SPREADS) for k in range(10)],
+    )
+    best = sets.search(problem, [Scatter((0.0,))], lambda share: None)[0]
+    assert best.terms == tuple(range(CAUSES, CAUSES + 10))
+
+
 def test_no_better_set_of_two_is_missed() -> None:
     effects = effects_of(np.random.default_rng(1))
     residual = noise(9) + 1.0 * effects[:, 3] + 1.0 * effects[:, 6]
