@@ -82,25 +82,8 @@ def _as_campaign(
     n, first = len(blocks), np.array([block[0] for block in blocks])
     span = len(lines) // n * step
     means = {sensor: np.array([_mean(column[block]) for block in blocks]) for sensor, column in values.items()}
-    unknown = np.full(n, np.nan)
-    return Campaign(
-        name=name,
-        sensors=tuple(sensors),
-        values=means,
-        test=np.arange(n),
-        order=np.arange(n),
-        direction=np.zeros(n),
-        dwell=np.full(n, np.inf if span >= DAY else span),
-        stop=np.zeros(n),
-        oil=("",) * n,
-        mounting=("",) * n,
-        T_start=unknown,
-        room_start=unknown,
-        humidity=unknown,
-        date=("",) * n,
-        lines=lines[first],
-        points=np.arange(1, n + 1),
-    )
+    dwell = np.full(n, np.inf if span >= DAY else span)
+    return Campaign.of(name, sensors, means, np.arange(n), order=np.arange(n), dwell=dwell, lines=lines[first])
 
 
 def _mean(values: np.ndarray) -> float:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, Self
 
 import numpy as np
 
@@ -147,6 +148,25 @@ class Campaign(Sensed):
     others: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     warnings: tuple[str, ...] = field(default=())
     series: Series | None = None
+
+    @classmethod
+    def of(
+        cls, name: str, sensors: Iterable[Sensor], values: Mapping[str, np.ndarray], test: np.ndarray, **more: Any
+    ) -> Self:
+        """Steady states in the order of their tests, with nothing else known but what is given.
+
+        Args:
+            name, sensors, values, test: as of a campaign
+            more: the same
+        """
+        n, k = len(test), int(test.max()) + 1
+        unknown, empty, number = np.full(k, np.nan), ("",) * k, np.arange(1, n + 1)
+        usual = {"order": np.arange(1.0, k + 1), "direction": np.zeros(n), "dwell": np.full(n, np.inf)}
+        usual |= {"stop": np.zeros(n), "lines": number + 1, "points": number}
+        usual |= dict.fromkeys(("T_start", "room_start", "humidity"), unknown)
+        return cls(
+            name, tuple(sensors), values, test, **{**usual, "oil": empty, "mounting": empty, "date": empty, **more}
+        )
 
     @property
     def n(self) -> int:

@@ -22,25 +22,7 @@ def campaign(tests: int = TESTS) -> Campaign:
     direction = np.resize([1, -1], n)
     values = {"n": speed + rng.normal(0.0, 0.01, n), "T_room": room}
     values |= {f"T{k}": room + speed + direction + rng.normal(0.0, 0.4, n) for k in range(4)}
-    none, empty = np.full(tests, np.nan), ("",) * tests
-    return Campaign(
-        name="made.csv",
-        sensors=tuple(sensors),
-        values=values,
-        test=np.repeat(np.arange(tests), 2),
-        order=np.arange(1.0, tests + 1),
-        direction=direction,
-        dwell=np.full(n, np.inf),
-        stop=np.zeros(n),
-        oil=empty,
-        mounting=empty,
-        T_start=none,
-        room_start=none,
-        humidity=none,
-        date=empty,
-        lines=np.arange(2, n + 2),
-        points=np.arange(1, n + 1),
-    )
+    return Campaign.of("made.csv", sensors, values, np.repeat(np.arange(tests), 2), direction=direction)
 
 
 def test_like_tests_are_joined_and_say_the_same() -> None:

@@ -188,24 +188,20 @@ def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
         usual = float(np.nanmean(np.abs(campaign.values[main.name][rows]))) if main else 1.0
         wanted = [own if v is None else own + v - usual if s.kind == "ambient" else own * v / usual for v in scale]
         values[s.name] = np.concatenate(wanted)
-    nothing = np.full(k, np.nan)
-    return replace(
-        campaign,
-        values=values,
-        test=np.repeat(np.arange(k), n),
+    return Campaign.of(
+        campaign.name,
+        campaign.sensors,
+        values,
+        np.repeat(np.arange(k), n),
         order=np.full(k, float(campaign.order.max())),
         direction=np.tile(campaign.direction[rows], k),
         dwell=np.tile(dwell, k),
         stop=stop,
         oil=(campaign.oil[0],) * k,
         mounting=(campaign.mounting[0],) * k,
-        T_start=nothing,
-        room_start=nothing,
-        humidity=nothing,
-        date=("",) * k,
-        lines=np.zeros(n * k, dtype=int),
         points=np.zeros(n * k, dtype=int),
-        series=None,
+        start_by_room=campaign.start_by_room,
+        room_begin=campaign.room_begin,
     )
 
 
@@ -248,26 +244,10 @@ def _grid(scenario: Scenario, card: Card, sensors: tuple[Sensor, ...], nominal: 
         values[s.name] = full * share + drift
     minutes = card.protocol.dwell_min or list(DWELLS)
     dwell = [np.inf] if steady else [60.0 * minutes[min(k, len(minutes) - 1)] for k in range(rows)]
-    stop = scenario.protocol.stop if scenario.protocol else 0.0
-    nothing = np.full(n, np.nan)
-    return Campaign(
-        name=f"grid of {len(SPEEDS)} x {len(LOADS)} points",
-        sensors=tuple(s for s in sensors if s.role == "given"),
-        values=values,
-        test=np.repeat(np.arange(n), rows),
-        order=np.arange(1.0, n + 1),
-        direction=direction,
-        dwell=np.tile(dwell, n),
-        stop=np.tile([0.0] + [stop] * (rows - 1), n),
-        oil=("",) * n,
-        mounting=("",) * n,
-        T_start=nothing,
-        room_start=nothing,
-        humidity=nothing,
-        date=("",) * n,
-        lines=np.arange(n * rows) + 2,
-        points=np.arange(n * rows) + 1,
-    )
+    stop = np.tile([0.0] + [scenario.protocol.stop if scenario.protocol else 0.0] * (rows - 1), n)
+    name, test = f"grid of {len(SPEEDS)} x {len(LOADS)} points", np.repeat(np.arange(n), rows)
+    given = (s for s in sensors if s.role == "given")
+    return Campaign.of(name, given, values, test, direction=direction, dwell=np.tile(dwell, n), stop=stop)
 
 
 def _answered(campaign: Campaign, nominal: Nominal) -> Campaign:

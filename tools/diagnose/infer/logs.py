@@ -254,27 +254,10 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     n = int(asked.span.max()) + 1
     told = asked.told.spread(found.levels.window).summed(asked.span, n)
     time = np.array([data.time[asked.span == k].mean() for k in range(n)])
-    none, flat = np.full(n, np.nan), np.zeros(n)
-    empty, dated = ("",) * n, all(log.dated for log in logs)
-    campaign = Campaign(
-        name=", ".join(log.name for log in logs),
-        sensors=logs[0].sensors,
-        values={s.name: flat for s in logs[0].sensors},
-        test=np.arange(n),
-        order=time,
-        direction=flat,
-        dwell=np.full(n, np.inf),
-        stop=flat,
-        oil=empty,
-        mounting=empty,
-        T_start=none,
-        room_start=none,
-        humidity=none,
-        date=tuple(f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d}" if dated else "" for t in time),
-        lines=np.arange(2, n + 2),
-        points=np.arange(1, n + 1),
-        names=empty,
-    )
+    dated, name = all(log.dated for log in logs), ", ".join(log.name for log in logs)
+    date = tuple(f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d}" if dated else "" for t in time)
+    values = {s.name: np.zeros(n) for s in logs[0].sensors}
+    campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     root = np.linalg.cholesky(found.levels.covariance[0])
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
     return LogProblem(Logged(own.plant, campaign, found.knobs, told.eta, told.H, root), season, found.levels)
