@@ -160,13 +160,12 @@ class Campaign(Sensed):
             more: the same
         """
         n, k = len(test), int(test.max()) + 1
-        unknown, empty, number = np.full(k, np.nan), ("",) * k, np.arange(1, n + 1)
-        usual = {"order": np.arange(1.0, k + 1), "direction": np.zeros(n), "dwell": np.full(n, np.inf)}
+        number = np.arange(1, n + 1)
+        usual: dict[str, Any] = {"order": np.arange(1.0, k + 1), "direction": np.zeros(n), "dwell": np.full(n, np.inf)}
         usual |= {"stop": np.zeros(n), "lines": number + 1, "points": number}
-        usual |= dict.fromkeys(("T_start", "room_start", "humidity"), unknown)
-        return cls(
-            name, tuple(sensors), values, test, **{**usual, "oil": empty, "mounting": empty, "date": empty, **more}
-        )
+        usual |= dict.fromkeys(("T_start", "room_start", "humidity"), np.full(k, np.nan))
+        usual |= dict.fromkeys(("oil", "mounting", "date"), ("",) * k)
+        return cls(name, tuple(sensors), values, test, **usual | more)
 
     @property
     def n(self) -> int:

@@ -228,25 +228,24 @@ def planned_campaign(scenario: Scenario, card: Card, points: Campaign | None) ->
 
 def _grid(scenario: Scenario, card: Card, sensors: tuple[Sensor, ...], nominal: Nominal) -> Campaign:
     """Speeds and loads in a mixed running order, both directions in each test where the rig's tests have them."""
-    both, steady = scenario.protocol is not None, scenario.protocol is None
-    directions = np.array([1.0, -1.0]) if both else np.zeros(1)
+    protocol, given = scenario.protocol, [s for s in sensors if s.role == "given"]
+    directions = np.array([1.0, -1.0]) if protocol else np.zeros(1)
     rows, n = len(directions), len(SPEEDS) * len(LOADS)
     grid = [(a, b) for a in SPEEDS for b in LOADS]
     shares = {"speed": 0, "torque": 1, "power": 1}
     order = (np.arange(n) * 7) % n  # neighbours of the grid are no neighbours in time
     place = np.repeat([grid[k] for k in order], rows, axis=0)
-    direction = np.tile(directions, n)
     values = {}
-    for s in (s for s in sensors if s.role == "given"):
+    for s in given:
         full = nominal.value(s.reads) / s.sign(np.ones(1))[0]
         share = place[:, shares[s.kind]] if s.kind in shares else np.ones(n * rows)
         drift = ROOM * (np.arange(n * rows) / (n * rows) - 0.5) if s.kind == "ambient" else 0.0
         values[s.name] = full * share + drift
     minutes = card.protocol.dwell_min or list(DWELLS)
-    dwell = [np.inf] if steady else [60.0 * minutes[min(k, len(minutes) - 1)] for k in range(rows)]
-    stop = np.tile([0.0] + [scenario.protocol.stop if scenario.protocol else 0.0] * (rows - 1), n)
+    dwell = [60.0 * minutes[min(k, len(minutes) - 1)] for k in range(rows)] if protocol else [np.inf]
+    stop = np.tile([0.0] + [protocol.stop if protocol else 0.0] * (rows - 1), n)
     name, test = f"grid of {len(SPEEDS)} x {len(LOADS)} points", np.repeat(np.arange(n), rows)
-    given = (s for s in sensors if s.role == "given")
+    direction = np.tile(directions, n)
     return Campaign.of(name, given, values, test, direction=direction, dwell=np.tile(dwell, n), stop=stop)
 
 

@@ -267,9 +267,10 @@ class Weighing:
             if key not in self.exchanged:
                 self.exchanged.add(key)
                 joins.append((key, fewer, None))
-        look = self.screened(best.fit, self.problem) if joins else self.first  # what else acts hardly changes effects
-        for join in joins:
-            self._join_all(look, *join)
+        if joins:
+            look = self.screened(best.fit, self.problem)  # what else acts hardly changes effects
+            for join in joins:
+                self._join_all(look, *join)
 
     def _join_all(self, look: Screen, key: Key, known: Hypothesis, gone: Acting | Extra | None) -> None:
         """Fits what promises most beside a hypothesis; or what is left of it, and what promises most beside that."""
