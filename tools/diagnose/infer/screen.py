@@ -21,8 +21,9 @@ FIRST = 3
 FURTHER = 1
 #: Start points of a form at most, but for those combinations.
 MOST = 6
-#: Start points along a threshold, whose fits may each have an optimum of their own: of physics, of instruments.
-THRESHOLDS = (6, 8)
+#: Start points along a threshold, whose fits may each have an optimum of their own: of physics, two usual widths apart,
+#: and of instruments.
+THRESHOLDS = (12, 8)
 #: Places of a shape that mostly stands at its bound: there, between, and at the other bound. Of several such shapes all
 #: combinations.
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
