@@ -31,7 +31,8 @@ class Quadratics:
     def spread(self, covariance: np.ndarray) -> Quadratics:
         """The same of what the groups scatter about, with a covariance (k, k)."""
         A = np.eye(self.H.shape[1]) + self.H @ covariance
-        return Quadratics(np.linalg.solve(A, self.eta[:, :, None])[:, :, 0], _even(np.linalg.solve(A, self.H)))
+        H = np.linalg.solve(A, self.H)
+        return Quadratics(np.linalg.solve(A, self.eta[:, :, None])[:, :, 0], (H + H.transpose(0, 2, 1)) / 2)
 
     def times(self, share: float) -> Quadratics:
         """The same from a share of the samples."""
@@ -43,10 +44,6 @@ class Quadratics:
         np.add.at(eta, group, self.eta)
         np.add.at(H, group, self.H)
         return Quadratics(eta, H)
-
-
-def _even(H: np.ndarray) -> np.ndarray:
-    return np.asarray((H + H.transpose(0, 2, 1)) / 2)
 
 
 @dataclass(frozen=True, eq=False)
