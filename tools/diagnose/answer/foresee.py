@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
 from ..infer.terms import remainders, spreads
 from ..infer.weigh import Options, Weighing
-from ..model.formula import Formula
 from .decide import temper
 
 #: Probability from which a hypothesis counts.
@@ -39,20 +38,21 @@ class Foreseen:
     causes: tuple[str, ...]
 
 
-def foresee(problem: Problem, formulas: Sequence[Formula], held: np.ndarray, options: Options) -> Foreseen:
+def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     """Everything anew without some readings, and how far it is off there.
 
     Args:
-        problem: of all data
-        formulas: all forms of all causes
+        whole: the search of all data; its settings, gross readings, prior odds and first-order effects are used
         held: entries of readings that are left out (k,)
-        options: how hypotheses are weighed; the prior odds are those of all data
+        options: how hypotheses are weighed
 
     Raises:
         SolveError: the model cannot be run without a cause
     """
+    problem = whole.problem
     kept = np.setdiff1d(np.arange(problem.m), held)
-    found = temper(Weighing(problem.only(kept), formulas, options).glance())
+    options = replace(options, critical=whole.critical, effects=whole.first.effects[kept])
+    found = temper(Weighing(problem.only(kept), whole.formulas, options).glance())
     aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
     left = _Left(problem.without(aside), found, held)
     leader, weights = found.hypotheses[0], np.where(found.probabilities > COUNTS, found.probabilities, 0.0)

@@ -41,11 +41,11 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
     """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
     Args:
-        found: the answer of all data; only its settings and its gross readings are used
+        found: the answer of all data; only what `foresee` says is used
         seed: of all draws
         progress: called with the share done
     """
-    problem, options = found.problem, Options(seed=seed, most=MOST, critical=found.critical)
+    problem, options = found.problem, Options(seed=seed, most=MOST)
     plans = schemes(problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
     for scheme, folds in plans.items():
@@ -53,7 +53,7 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
         for rows in folds:
             with suppress(SolveError):
                 held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
-                errors.append(foresee(problem, found.formulas, held, options))
+                errors.append(foresee(found, held, options))
             done += 1
             progress(done / total)
         if errors:

@@ -148,7 +148,13 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
+def screened(
+    problem: Problem,
+    near: Look,
+    linear: tuple[White, np.ndarray],
+    forms: Sequence[Formula],
+    effects: np.ndarray | None = None,
+) -> Screen:
     """What every form would explain beside a fitted hypothesis.
 
     Args:
@@ -156,10 +162,12 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
         near: where it was fitted
         linear: whitening by all that is uncertain there, and the residual in it
         forms: of causes
+        effects: of all candidates, where they are known (M, k)
     """
     candidates, owner = samples(tuple(forms), changes(problem))
-    effects = problem.tangents(near.z, near.acting, candidates)
-    effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
+    if effects is None:
+        effects = problem.tangents(near.z, near.acting, candidates)
+        effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)
 
 

@@ -69,6 +69,7 @@ class Options:
         wanted: causes that are fitted however they look
         critical: log prior odds of nothing against one cause, where they and gross readings are known; else draws of
             the null tell them
+        effects: of all candidates where nothing acts (M, k), where they are known
     """
 
     alpha: float = 0.03
@@ -76,6 +77,7 @@ class Options:
     most: int = 8
     wanted: Collection[str] = ()
     critical: float | None = None
+    effects: np.ndarray | None = None
 
 
 USUAL = Options()
@@ -116,7 +118,7 @@ class Weighing:
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
-        first = self.screened(null, problem)
+        first = screened(problem, null.look, null.linear(problem), self.formulas, options.effects)
         self.critical = FIRST
         self.problem, self.null, self.first = problem, null, first
         if options.critical is None:  # else gross readings are known as well
