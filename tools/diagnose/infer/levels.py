@@ -31,8 +31,9 @@ class Quadratics:
     def spread(self, covariance: np.ndarray) -> Quadratics:
         """The same of what the groups scatter about, with a covariance (k, k)."""
         A = np.eye(self.H.shape[1]) + self.H @ covariance
-        H = np.linalg.solve(A, self.H)
-        return Quadratics(np.linalg.solve(A, self.eta[:, :, None])[:, :, 0], (H + H.transpose(0, 2, 1)) / 2)
+        both = np.linalg.solve(A, np.concatenate([self.H, self.eta[:, :, None]], axis=2))
+        H = both[:, :, :-1]
+        return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
 
     def times(self, share: float) -> Quadratics:
         """The same from a share of the samples."""
