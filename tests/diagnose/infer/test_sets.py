@@ -219,7 +219,6 @@ def test_search_and_sampler_name_the_same_in_the_measured_campaign() -> None:
     named = set()
     for seed in range(3):
         own = Weighing(whole.problem, whole.formulas, Options(seed=seed))
-        own.ask_alarm()
         own.run()
         near = own.leader().fit
         searched = own.search(near, own.screened(near, own.problem), "", 0.0)  # makes the linear problem of both

@@ -10,7 +10,7 @@ from scipy.special import ndtri
 
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
-from ..infer.fit import Fit, prior_precision
+from ..infer.fit import Fit, Vector
 from ..infer.found import Found, Hypothesis, Member
 from ..infer.problem import Acting, Problem, priors
 from ..library.cause import Form, Shape, Size
@@ -35,9 +35,9 @@ SPREADS = np.geomspace(0.1, 32.0, 33)
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
     fit, J = h.fit, h.fit.look.jacobian
-    x, sizes, G = fit.look.x, places(problem, h), White.of(fit.noise.covariance)(J)
-    covariance = np.linalg.inv(G.T @ G + np.diag(prior_precision(problem, fit.look.acting)))
-    covariance[sizes, sizes] += (fit.form * x[sizes]) ** 2
+    x, vector, G = fit.look.x, Vector(problem, fit.look.acting), White.of(fit.noise.covariance)(J)
+    covariance = np.linalg.inv(G.T @ G + np.diag(vector.precision))
+    covariance[vector.sizes, vector.sizes] += (fit.form * x[vector.sizes]) ** 2
     return x, covariance
 
 
@@ -45,12 +45,6 @@ def loose_variance(fit: Fit) -> np.ndarray:
     """Variances (M,) by the scatter of readings, inputs and days as found, without tolerances."""
     loose = zip(fit.noise.scales, fit.noise.loose, strict=True)
     return np.asarray(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))
-
-
-def places(problem: Problem, h: Hypothesis) -> list[int]:
-    """Where the sizes of its causes stand in its vector."""
-    lengths = [a.formula.size for a in h.fit.look.acting]
-    return [problem.nz + sum(lengths[:k]) for k in range(len(lengths))]
 
 
 def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
@@ -61,7 +55,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
         return _spread(found, cause, members)
     pairs = []
     for h, _ in acting:
-        place = places(found.problem, h)[h.fit.causes.index(cause)]
+        place = Vector(found.problem, h.fit.look.acting).sizes[h.fit.causes.index(cause)]
         x, covariance = posterior(found.problem, h)
         pairs.append((x[place], covariance[place, place]))
     weights = [p for _, p in acting]
@@ -89,7 +83,7 @@ def _told(of: Shape | Size, ends: Sequence[float]) -> Estimate:
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
     """The shapes of a cause in a hypothesis."""
-    begin = places(problem, h)[h.fit.causes.index(one.id)]
+    begin = Vector(problem, h.fit.look.acting).sizes[h.fit.causes.index(one.id)]
     x, covariance = posterior(problem, h)
     found = []
     for k, shape in enumerate(one.formula.form.shapes, start=1):
@@ -189,7 +183,7 @@ def impacts(
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
     change = (fit.look.shown - problem.shown(fit.look.z, without))[problem.own]
-    spans = zip(places(problem, h), fit.look.acting, strict=True)
+    spans = zip(Vector(problem, fit.look.acting).sizes, fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
     covariance, jacobian = posterior(problem, h)[1][np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
     run, told = np.isfinite(change), dict[str, findings.Impact]()  # without the cause the machine may run away

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..infer.evidence import split_error
-from ..infer.fit import Fit, prior_precision
+from ..infer.fit import Fit, Vector
 from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
 from ..infer.terms import remainders, spreads
@@ -42,7 +42,7 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     """Everything anew without some readings, and how far it is off there.
 
     Args:
-        whole: the search of all data; its settings, gross readings, prior odds and first-order effects are used
+        whole: the search of all data; its settings, gross readings and prior odds are used
         held: entries of readings that are left out (k,)
         options: how hypotheses are weighed
 
@@ -51,7 +51,6 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     """
     problem = whole.problem
     kept = np.setdiff1d(np.arange(problem.m), held)
-    options = replace(options, critical=whole.critical, effects=whole.first.effects[kept])
     found = temper(Weighing(problem.only(kept), whole.formulas, options).glance())
     aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
     left = _Left(problem.without(aside), found, held)
@@ -83,6 +82,6 @@ class _Left:
         own = [Extra(self.terms[e.of.label], e.size) for e in extras if e.of.label in self.terms]
         look = self.problem.look(fit.look.z, fit.look.acting)
         noise = self.problem.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
-        S = noise.covariance + look.jacobian / prior_precision(self.problem, look.acting) @ look.jacobian.T
+        S = noise.covariance + look.jacobian / Vector(self.problem, look.acting).precision @ look.jacobian.T
         r = self.problem.measured - look.shown + look.jacobian @ look.x
         return split_error(S, noise.passing, r, self.kept, self.held)

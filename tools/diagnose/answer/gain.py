@@ -45,7 +45,7 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
         seed: of all draws
         progress: called with the share done
     """
-    problem, options = found.problem, Options(seed=seed, most=MOST)
+    problem, options = found.problem, Options(seed=seed, most=MOST, critical=found.critical)
     plans = schemes(problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
     for scheme, folds in plans.items():

@@ -104,9 +104,7 @@ def views(found: Found) -> tuple[View, ...]:
     whole, e = found.null.linear(problem)
     V, r = whole.L @ whole.L.T, whole.L @ e
     kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
-    share = found.prior.share
-    weights = first.weights + [share[c.id] for c in first.candidates]
-    prior = priors(first.candidates)
+    weights, prior = first.weights(found.prior), priors(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
     for i in kinds if len(kinds) > 1 else ():

@@ -67,13 +67,9 @@ class Fit:
         """Ids of its causes."""
         return tuple(a.id for a in self.look.acting)
 
-    def split(self, problem: Problem, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
-        """Nuisances and causes of another point of the same vector."""
-        return _Vector(problem, self.look.acting).split(x)
-
     def moved(self, problem: Problem, effect: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes where they go, to first order, as something with an effect (M,) joins."""
-        vector, white = _Vector(problem, self.look.acting), White.of(self.noise.covariance)
+        vector, white = Vector(problem, self.look.acting), White.of(self.noise.covariance)
         J = white(self.look.jacobian)
         change = np.linalg.solve(J.T @ J + np.diag(vector.precision), J.T @ white(effect))
         return vector.split(np.clip(self.look.x - change, vector.low, vector.high))
@@ -91,14 +87,9 @@ class Fit:
         Nuisances, shapes and sizes of the hypothesis are uncertain by their priors, sizes by the widest.
         """
         J = self.look.jacobian
-        wide = J / np.sqrt(prior_precision(problem, self.look.acting))
+        wide = J / np.sqrt(Vector(problem, self.look.acting).precision)
         white = White.of(self.scatter(problem) + wide @ wide.T)
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
-
-
-def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
-    """Of the vector's entries by their priors, sizes by the widest."""
-    return _Vector(problem, acting).precision
 
 
 def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
@@ -112,8 +103,8 @@ def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
     return rough
 
 
-class _Vector:
-    """The vector of a problem and some causes: priors, bounds and longest steps."""
+class Vector:
+    """The vector of a problem and some causes: priors, those of sizes the widest, bounds, longest steps, places."""
 
     def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
         self.nz, self.acting = problem.nz, tuple(acting)
@@ -185,7 +176,7 @@ def fitted(
 
 def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
     """Damped Gauss-Newton to convergence at a given scatter: the look there, and half the squared misfit."""
-    vector, white = _Vector(problem, look.acting), White.of(noise.covariance)
+    vector, white = Vector(problem, look.acting), White.of(noise.covariance)
     cost, damping = _cost(problem, vector, white, look), 0.0
     for _ in range(steps):
         J = white(look.jacobian)
@@ -230,7 +221,7 @@ def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
     raise AssertionError("unreachable")
 
 
-def _cost(problem: Problem, vector: _Vector, white: White, look: Look) -> float:
+def _cost(problem: Problem, vector: Vector, white: White, look: Look) -> float:
     """Half the squared misfit, priors included."""
     e = white(problem.measured - look.shown)
     return float(0.5 * e @ e + 0.5 * vector.precision @ look.x**2)
@@ -240,7 +231,7 @@ class _Line:
     """A problem linearised at a look: what is known but for the sizes, their effects, and the residual."""
 
     def __init__(self, problem: Problem, look: Look) -> None:
-        self.problem, self.look, self.vector = problem, look, _Vector(problem, look.acting)
+        self.problem, self.look, self.vector = problem, look, Vector(problem, look.acting)
         vector, J = self.vector, look.jacobian
         known = J[:, np.r_[np.arange(vector.nz), vector.shapes]]
         self.known, self.G = known @ known.T, J[:, vector.sizes]

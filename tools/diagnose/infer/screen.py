@@ -13,6 +13,7 @@ from scipy.special import ndtri
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import White, log_bayes_factors
+from .prior import Prior
 from .problem import PACES, Acting, Look, Problem, priors
 
 #: Start points of a form for its first shape, beside the one in the middle.
@@ -76,12 +77,11 @@ class Screen:
         """What the same effects would explain beside another hypothesis."""
         return Screen.of(self.candidates, self.owner, self.effects, linear)
 
-    @property
-    def weights(self) -> np.ndarray:
-        """Log share of each candidate in its cause (k,)."""
+    def weights(self, prior: Prior) -> np.ndarray:
+        """Log prior weight of each candidate, all together 1 (k,)."""
         counts = np.bincount(self.owner)
         shares = [c.formula.form.weight / counts[k] for c, k in zip(self.candidates, self.owner, strict=True)]
-        return np.asarray(np.log(shares))
+        return np.asarray(np.log(shares) + [prior.share[c.id] for c in self.candidates])
 
     def by_form(self, n: int) -> np.ndarray:
         """Log Bayes factor of each of n formulas: mean over its candidates (n,)."""
@@ -148,13 +148,7 @@ def spread(n: int, d: int) -> np.ndarray:
     return np.asarray(ndtri(np.clip(shares, 0.03, 0.97)))
 
 
-def screened(
-    problem: Problem,
-    near: Look,
-    linear: tuple[White, np.ndarray],
-    forms: Sequence[Formula],
-    effects: np.ndarray | None = None,
-) -> Screen:
+def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
     """What every form would explain beside a fitted hypothesis.
 
     Args:
@@ -162,12 +156,10 @@ def screened(
         near: where it was fitted
         linear: whitening by all that is uncertain there, and the residual in it
         forms: of causes
-        effects: of all candidates, where they are known (M, k)
     """
     candidates, owner = samples(tuple(forms), changes(problem))
-    if effects is None:
-        effects = problem.tangents(near.z, near.acting, candidates)
-        effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
+    effects = problem.tangents(near.z, near.acting, candidates)
+    effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)
 
 

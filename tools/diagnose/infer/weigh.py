@@ -69,7 +69,6 @@ class Options:
         wanted: causes that are fitted however they look
         critical: log prior odds of nothing against one cause, where they and gross readings are known; else draws of
             the null tell them
-        effects: of all candidates where nothing acts (M, k), where they are known
     """
 
     alpha: float = 0.03
@@ -77,7 +76,6 @@ class Options:
     most: int = 8
     wanted: Collection[str] = ()
     critical: float | None = None
-    effects: np.ndarray | None = None
 
 
 USUAL = Options()
@@ -98,9 +96,7 @@ def weigh(
         options: how
         progress: told of each stage and the share done
     """
-    own = Weighing(problem, formulas, options, progress)
-    own.ask_alarm()
-    return own.run()
+    return Weighing(problem, formulas, options, progress).run()
 
 
 class Weighing:
@@ -118,7 +114,7 @@ class Weighing:
         progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
-        first = screened(problem, null.look, null.linear(problem), self.formulas, options.effects)
+        first = self.screened(null, problem)
         self.critical = FIRST
         self.problem, self.null, self.first = problem, null, first
         if options.critical is None:  # else gross readings are known as well
@@ -127,10 +123,12 @@ class Weighing:
         if self.problem.aside != problem.aside:
             self.null = fitted(self.problem, (), null.look.z)
             self.first = self.screened(self.null, self.problem)
+        self._ask_alarm()
+        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
 
-    def ask_alarm(self) -> None:
+    def _ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
-        weights = self._weights(self.first)
+        weights = self.first.weights(self.prior)
         seen = float(np.logaddexp.reduce(self.first.log_bf + weights))
         if (known := self.options.critical) is not None:
             self.drawn, self.critical, self.p_any = np.zeros(0), known, 0.0 if seen > known else 1.0
@@ -141,14 +139,11 @@ class Weighing:
 
     def glance(self) -> Found:
         """The first linearisation alone: the likeliest sets where nothing acts, fitted."""
-        self.ask_alarm()
-        self.keep_null()
         self.fit_sets(self.search(self.null, self.first, "sets of causes", 0.3), self.null, 0.4)
         return self._weighed()
 
     def run(self) -> Found:
         """Everything."""
-        self.keep_null()
         for k in range(LOOKS):
             if k and self.p_any > QUIET and not self.leader().causes:
                 break
@@ -171,14 +166,6 @@ class Weighing:
         """What every cause would explain beside a fitted hypothesis."""
         return screened(problem, near.look, near.linear(problem), self.formulas)
 
-    def _weights(self, look: Screen) -> np.ndarray:
-        """Log prior weight of each candidate, all together 1."""
-        return look.weights + [self.prior.share[c.id] for c in look.candidates]
-
-    def keep_null(self) -> None:
-        """Nothing among the hypotheses."""
-        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
-
     def leader(self) -> Hypothesis:
         """The likeliest hypothesis so far."""
         return max(self.hypotheses.values(), key=lambda h: h.log_joint)
@@ -198,7 +185,7 @@ class Weighing:
     def search(self, near: Fit, look: Screen, stage: str, begun: float, scatters: int = sets.SCATTERS) -> list[TermSet]:
         """The likeliest sets of terms at a linearisation."""
         problem, J = self.whole, near.look.jacobian
-        candidates = zip(look.candidates, self._weights(look), look.effects.T, strict=True)
+        candidates = zip(look.candidates, look.weights(self.prior), look.effects.T, strict=True)
         terms = [as_term(c, log, effect[:, None]) for c, log, effect in candidates]
         effects, acting, place = np.zeros(problem.m), near.look.acting, problem.nz
         for a in acting:

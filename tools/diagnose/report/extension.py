@@ -21,6 +21,7 @@ from ....scenarios.scenario import Scenario
 from ....scenarios.write import DIAGNOSED, rig_text
 from ..answer.estimate import posterior
 from ..answer.findings import Calibrated
+from ..infer.fit import Vector
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Form, Row, Theta
 from ..library.check import parameters
@@ -228,7 +229,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
 
     def at(x: np.ndarray) -> Extended:
-        z, acting = h.fit.split(found.problem, x)
+        z, acting = Vector(found.problem, h.fit.look.acting).split(x)
         told = values(found, z)
         added = [_calibration(n, told) for n in found.problem.data.nuisances if n.parts]
         causes = [Applied(a.id, a.formula.cause.doc, a.formula.form, a.formula.theta(a.t)) for a in acting]
