@@ -15,7 +15,7 @@ from gearheat.tools.diagnose.setting import Setting
 def test_the_right_cause_takes_the_place_of_a_wrong_one_in_a_set(wrong: tuple[Setting, Found]) -> None:
     found, pair = wrong[1], ("cooling.air", "losses.churning")
     own = Weighing(found.problem, found.formulas, Options(critical=found.critical))
-    own.hypotheses.clear()  # the pair leads, without nothing beside it
+    own.hypotheses.clear()  # a fit without a cause would lead the pair
     formulas = [next(f for f in own.formulas if f.cause.id == cause) for cause in pair]
     acting = [Acting(f, np.r_[0.2, np.zeros(f.size - 1)]) for f in formulas]
     fit = fitted(found.problem, acting, own.null.look.z)

@@ -42,9 +42,9 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     """Everything anew without some readings, and how far it is off there.
 
     Args:
-        whole: the search of all data; its settings, gross readings and prior odds are used
+        whole: the search of all data; its problem, forms and gross readings are used
         held: entries of readings that are left out (k,)
-        options: how hypotheses are weighed
+        options: how hypotheses are weighed; the prior odds are those of all data
 
     Raises:
         SolveError: the model cannot be run without a cause

@@ -41,7 +41,7 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
     """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
     Args:
-        found: the answer of all data; only what `foresee` says is used
+        found: the answer of all data; of it the folds use settings, gross readings and prior odds only
         seed: of all draws
         progress: called with the share done
     """

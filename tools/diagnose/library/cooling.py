@@ -71,7 +71,7 @@ def contact(at: Context) -> Cause:
         G, paths = roles.conductance(name), roles.scaled(name)
 
         def changed(theta: Theta, row: Row) -> Values:
-            R = theta["R"] * ca.exp(theta["e"] * ca.log(smooth_abs(row.rise / ranges.rise, 0.02)))
+            R = theta["R"] * at.by_rise(row, theta, "e")
             R = R if limit is None else R * limit.gate(theta, row, ranges)
             return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
 

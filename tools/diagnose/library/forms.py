@@ -32,6 +32,8 @@ MOST_LESS = 0.95
 USUAL = 0.04
 #: Share of the middle speed below which what follows the speed no longer does.
 SLOW = 0.05
+#: The same of the rise of the oil.
+COOL = 0.02
 #: Temperatures that range over less have no sides [K].
 LEAST_SPAN = 5.0
 #: No more places than these have forms of their own.
@@ -185,6 +187,10 @@ class Context:
             return 1.0
         ratio = row.sensors[name] / max(self.ranges.mid.get(name, 1.0), 1e-9)
         return ca.exp(theta[exponent] * ca.log(smooth_abs(ratio, SLOW)))
+
+    def by_rise(self, row: Row, theta: Theta, exponent: str) -> Num:
+        """Rise of the oil over the usual one to an exponent, a shape by its name."""
+        return ca.exp(theta[exponent] * ca.log(smooth_abs(row.rise / self.ranges.rise, COOL)))
 
     def power(self, doc: str, sd: float, low: float, high: float) -> Size:
         """A power [W] at the middle of the data.

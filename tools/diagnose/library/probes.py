@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-import casadi as ca
-
-from ....model.laws.smooth import smooth_abs
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Row, Theta, Values
 from .entries import entry
@@ -73,14 +70,10 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
 
 def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     """Room probes in the warm air of the machine."""
-    rise = at.ranges.rise
-
-    def error(theta: Theta, row: Row, value: Num) -> Num:
-        return ca.exp(theta["e"] * ca.log(smooth_abs(row.rise / rise, 0.02)))
-
     known = entry("sensor.ambient.heated", at)
+    forms = [(s, wrong(s, "bias", lambda theta, row, value: at.by_rise(row, theta, "e"))) for s in own]
     yield known.with_forms(
-        replace(wrong(s, "bias", error), name=one_of(s, own), weight=1 / len(own), shapes=known.shapes) for s in own
+        replace(form, name=one_of(s, own), weight=1 / len(own), shapes=known.shapes) for s, form in forms
     )
 
 
