@@ -18,9 +18,11 @@ from .findings import UNEXPLAINED, Verdict
 SURE = 0.9
 #: Probability of a member of a class that is named, as a share of its class.
 MEMBER = 0.02
-#: Exponent of the likelihood ratio of answers against each other: a power posterior. Evidence of models that are only
-#: nearly true is too sure (Miller and Dunson, 2019).
-POWER = 0.6
+#: Exponent of the likelihood ratio of answers against each other where much is to be explained: a power posterior.
+#: Evidence of models that are only nearly true is too sure (Miller and Dunson, 2019).
+POWER = 0.5
+#: Log odds against nothing over which the exponent falls to it from one: what a model leaves is a share of an effect.
+FALLING = 20.0
 #: Standard deviations below which a cause shows nothing, at the largest size that it can have.
 INVISIBLE = 1.0
 #: A nuisance or tolerance whose prior is wider than this many standard deviations of the readings counts as fitted.
@@ -109,7 +111,7 @@ def decide(found: Found) -> Decision:
 
 
 def temper(found: Found) -> Found:
-    """The search with the likelihood ratios of its answers to the power `POWER`.
+    """The search with the likelihood ratios of its answers to a power, the lower the more there is to be explained.
 
     What the prior says of answers, the probability that nothing is wrong, and the odds of hypotheses within one answer
     stay. Causes that these data cannot show whatever their size take no part.
@@ -119,14 +121,18 @@ def temper(found: Found) -> Found:
     logs = np.array([h.log_joint for h in found.hypotheses])
     logs -= np.logaddexp.reduce(logs)
     keys, tempered = answer_keys(found), logs.copy()
+    wrong = np.array([bool(key) for key in keys])
+    if not wrong.any():
+        return replace(found, probabilities=np.exp(logs))
+    anything = np.logaddexp.reduce(logs[wrong])
+    odds = max(anything - np.logaddexp.reduce(logs[~wrong]), 0.0)
+    power = POWER + (1 - POWER) * np.exp(-odds / FALLING)
     for key in filter(None, dict.fromkeys(keys)):
         own = [k for k, other in enumerate(keys) if other == key]
         priors = {frozenset(h.causes): found.prior(h.causes) for h in (found.hypotheses[k] for k in own)}
         prior = np.logaddexp.reduce(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
-        tempered[own] += (1 - POWER) * (prior - np.logaddexp.reduce(logs[own]))
-    wrong = np.array([bool(key) for key in keys])
-    if wrong.any():
-        tempered[wrong] += np.logaddexp.reduce(logs[wrong]) - np.logaddexp.reduce(tempered[wrong])
+        tempered[own] += (1 - power) * (prior - np.logaddexp.reduce(logs[own]))
+    tempered[wrong] += anything - np.logaddexp.reduce(tempered[wrong])
     return replace(found, probabilities=np.exp(tempered))
 
 
