@@ -52,11 +52,11 @@ def test_a_cause_that_the_design_cannot_show_leads_no_answer(wrong: tuple[Settin
 
 
 def test_a_power_of_the_likelihood_ratio_keeps_the_prior(wrong: tuple[Setting, Found]) -> None:
-    """Answers as likely as their priors stay so; a ratio of evidence counts to a power, whole where nothing is likely."""
+    """Answers as likely as their priors stay so; evidence counts to a power, whole where nothing is likely."""
     found = wrong[1]
     nothing = next(h for h in found.hypotheses if not h.causes and not h.extras)
     (one, other), prior = [next(h for h in found.hypotheses if h.causes == (c,)) for c in CAUSES[:2]], found.prior
-    for ratio, none, power in ((0.0, -999.0, POWER), (5.0, -999.0, POWER), (5.0, 9.0, 1.0)):
+    for ratio, none, power in ((0.0, -999.0, POWER), (5.0, -999.0, POWER), (5.0, 30.0, 1.0)):
         hypotheses = tuple(
             replace(h, log_joint=prior(h.causes) + value) for h, value in ((one, ratio), (other, 0.0), (nothing, none))
         )

@@ -21,8 +21,8 @@ MEMBER = 0.02
 #: Exponent of the likelihood ratio of answers against each other where much is to be explained: a power posterior.
 #: Evidence of models that are only nearly true is too sure (Miller and Dunson, 2019).
 POWER = 0.5
-#: Log odds against nothing over which the exponent falls to it from one: what a model leaves is a share of an effect.
-FALLING = 20.0
+#: The exponent falls to it from one with this root of the probability of nothing: models leave a share of an effect.
+FALLING = 20
 #: Standard deviations below which a cause shows nothing, at the largest size that it can have.
 INVISIBLE = 1.0
 #: A nuisance or tolerance whose prior is wider than this many standard deviations of the readings counts as fitted.
@@ -124,15 +124,13 @@ def temper(found: Found) -> Found:
     wrong = np.array([bool(key) for key in keys])
     if not wrong.any():
         return replace(found, probabilities=np.exp(logs))
-    anything = np.logaddexp.reduce(logs[wrong])
-    odds = max(anything - np.logaddexp.reduce(logs[~wrong]), 0.0)
-    power = POWER + (1 - POWER) * np.exp(-odds / FALLING)
+    power = POWER + (1 - POWER) * np.exp(logs[~wrong]).sum() ** (1 / FALLING)
     for key in filter(None, dict.fromkeys(keys)):
         own = [k for k, other in enumerate(keys) if other == key]
         priors = {frozenset(h.causes): found.prior(h.causes) for h in (found.hypotheses[k] for k in own)}
         prior = np.logaddexp.reduce(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
         tempered[own] += (1 - power) * (prior - np.logaddexp.reduce(logs[own]))
-    tempered[wrong] += anything - np.logaddexp.reduce(tempered[wrong])
+    tempered[wrong] += np.logaddexp.reduce(logs[wrong]) - np.logaddexp.reduce(tempered[wrong])
     return replace(found, probabilities=np.exp(tempered))
 
 

@@ -232,15 +232,11 @@ def _end(sensor: Sensor) -> str:
 
 def find_detectable(found: Found) -> dict[str, float]:
     """Smallest size of each cause, in its unit, that would be an alarm in 80 of 100 such campaigns; none: never."""
-    share = found.prior.share
-    first: dict[str, int] = {}
-    for k, c in enumerate(found.first.candidates):
-        first.setdefault(c.id, k)
-    places_of = list(first.values())
-    candidates = [found.first.candidates[k] for k in places_of]
-    q = (found.first.white[:, places_of] ** 2).sum(axis=0)
+    _, places = np.unique([c.id for c in found.first.candidates], return_index=True)
+    candidates = [found.first.candidates[k] for k in places]
+    q = (found.first.white[:, places] ** 2).sum(axis=0)
     low, high, widths = priors(candidates)
-    needed = np.array([found.critical - share[c.id] for c in candidates])
+    needed = np.array([found.critical - found.prior.share[c.id] for c in candidates])
     sign = np.where(high > 0, 1.0, -1.0)
     below, above = np.zeros(len(q)), np.where(sign > 0, high, -low)
 

@@ -73,9 +73,7 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
 def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
     """How far each reading that is set aside lies from what the others say, in standard deviations of that."""
     white, e = fit.linear(problem)
-    V, r = white.L @ white.L.T, white.L @ e
-    inverse = white.inverse
-    a = inverse @ r
+    V, inverse, a = white.L @ white.L.T, white.inverse, white.turned(e)
     found = []
     for aside in sorted(problem.aside):
         term = problem.far(aside, fit.look)
@@ -137,9 +135,7 @@ def scatters(found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
 
 def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
     """Standard deviations of the logarithms of the scales, by the information of the data and of the prior."""
-    noise = h.fit.noise
-    white, _ = h.fit.linear(found.problem)
-    inverse = white.inverse
+    noise, inverse = h.fit.noise, h.fit.linear(found.problem)[0].inverse
     weighted = [inverse @ t.matrix * np.exp(2 * s) for s, t in zip(noise.scales, noise.loose, strict=True)]
     information = np.array([2 * float((W * W.T).sum()) for W in weighted])
     prior = np.array([t.loose for t in noise.loose])
