@@ -20,7 +20,7 @@ SURE = 0.9
 MEMBER = 0.02
 #: Exponent of the likelihood ratio of answers against each other where much is to be explained: a power posterior.
 #: Evidence of models that are only nearly true is too sure (Miller and Dunson, 2019).
-POWER = 0.5
+POWER = 0.6
 #: The exponent falls to it from one with this root of the probability of nothing: models leave a share of an effect.
 FALLING = 20
 #: Standard deviations below which a cause shows nothing, at the largest size that it can have.
