@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Container, Iterable, Mapping
 from contextlib import suppress
 from typing import Any
@@ -14,6 +15,8 @@ from ..model.machines.spec import Spec
 
 #: A part and one of its values, or of its `sizes`.
 _PATH = re.compile(r"[A-Za-z_]\w*\.[A-Za-z_]\w*")
+#: Parts that were asked for last: who varies a value of one asks for the others again as they are.
+_RECENT = deque[Component](maxlen=200)
 
 
 def refers(raw: object, parts: Container[str]) -> bool:
@@ -54,6 +57,7 @@ def look_up(where: str, path: str, unit: str, types: Mapping[str, type[Component
     """
     name, _, key = path.partition(".")
     part = make(types[name], name, values)
+    _RECENT.append(part)
     sizes, declared = part.sizes(), {**part.parameters, **part.derived}
     if key not in sizes and not (key in declared and key in part.values):
         known = [*sizes, *declared]

@@ -27,7 +27,7 @@ def diagnose(
     predict: Path | None = None,
     predictions: Path | None = None,
     causes: int = 8,
-    alpha: float = 0.03,
+    alpha: float = 0.01,
     seed: int = 0,
     quick: bool = False,
     everything: bool = False,

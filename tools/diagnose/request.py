@@ -48,7 +48,7 @@ class Request:
     predict: Path | None = None
     causes: int = MOST
     quick: bool = False
-    alpha: float = 0.03
+    alpha: float = 0.01
     seed: int = 0
     series: Path | None = None
     reference_series: Path | None = None
@@ -69,7 +69,7 @@ class Request:
             found.append("no data are given. Name a table of readings, or logs with --logs FILE.")
         if not 0.0 < self.alpha < 1.0:
             found.append(
-                f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.03."
+                f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
             )
         if not 1 <= self.causes <= MOST:
             found.append(f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}.")

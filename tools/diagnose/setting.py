@@ -119,9 +119,8 @@ def ranges_of(
     flat = spec.flat()
     ends = [f"{end}.{quantity}" for end in roles.ends for quantity in ("w", "tau")]
     shown = [roles.speed, roles.torque, roles.oil, *([roles.viscosity] if roles.viscosity else []), *ends]
-    given = [s.reads for s in campaign.given]
     does = {p.name: [path for key in DOES if (path := f"{p.name}.{key}") in flat.index] for p in spec.parts}
-    plant = Plant(flat, (), given, tuple(dict.fromkeys([*shown, *(path for paths in does.values() for path in paths)])))
+    plant = Plant(flat, (), (), tuple(dict.fromkeys([*shown, *(path for paths in does.values() for path in paths)])))
     o = Observed(plant, campaign, (), oils, point)
     values = dict(zip(plant.shown, o.outputs().T, strict=True))
     if not (fine := np.isfinite(values[roles.oil])).any():

@@ -31,7 +31,7 @@ MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.
-DRAWS = 500
+DRAWS = 1000
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ class Options:
             the null tell them
     """
 
-    alpha: float = 0.03
+    alpha: float = 0.01
     seed: int = 0
     most: int = 8
     wanted: Collection[str] = ()
