@@ -170,7 +170,9 @@ class _Chances:
         self.nothing = float(self.p[[not _named(h) for h in found.hypotheses]].sum())
         odds = np.log(max(1 - self.nothing, 1e-300)) - np.log(max(self.nothing, 1e-300)) + found.critical
         n = len(found.drawn)
-        self.p_any = float((1 + (found.drawn >= odds).sum()) / (1 + n))
+        self.p_any, least = ((1 + int((found.drawn >= x).sum())) / (1 + n) for x in (odds, found.critical))
+        if self.nothing >= 0.5:  # odds lack causes that promise nothing, which are not fitted: p of the first look
+            self.p_any = max(min(self.p_any, found.p_any), least)
         share = float((found.drawn > found.critical).mean())
         spread = np.sqrt(max(share * (1 - share), 1 / n) / n)
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))

@@ -96,8 +96,6 @@ def p_value(p: float | None) -> str:
 
 def chance(p: float) -> str:
     """How often chance alone does as much."""
-    if p > 0.5:  # causes that promise nothing are not fitted: p is too high there
-        return "most campaigns without a fault deviate as much (p > 0.5)"
     for out_of in (100, 1000):
         if p * out_of >= 1:
             return f"{out_of * p:.0f} of {out_of} campaigns without a fault deviate as much ({p_value(p)})"
