@@ -376,6 +376,4 @@ def _path(file: File | None) -> Path | None:
 
 
 def _paths(files: Files) -> tuple[Path, ...]:
-    if files is None:
-        return ()
-    return tuple(Path(f) for f in ([files] if isinstance(files, str | Path) else files))
+    return tuple(Path(f) for f in ([files] if isinstance(files, str | Path) else files or ()))

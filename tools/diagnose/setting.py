@@ -135,11 +135,10 @@ def ranges_of(
     whole |= {"order": campaign.progress, "direction": campaign.direction}
     low, mid, high = ({name: float(np.quantile(v[fine], q)) for name, v in whole.items()} for q in (0.05, 0.5, 0.95))
     loss = float(np.median(np.abs(np.sum(power, axis=0)[fine])))
-    known = {"order"} if campaign.n_tests > 1 else set()
-    known |= {"dwell"} if np.isfinite(campaign.dwell).any() else set()
-    known |= {"humidity"} if np.isfinite(campaign.humidity).any() else set()
-    known |= {"mounting"} if len(set(campaign.mounting)) > 1 else set()
-    known |= {f"still: {s.name}" for s in campaign.read if campaign.still(s)}
+    facts = {"order": campaign.n_tests > 1, "mounting": len(set(campaign.mounting)) > 1}
+    facts |= {"dwell": np.isfinite(campaign.dwell).any(), "humidity": np.isfinite(campaign.humidity).any()}
+    facts |= {f"still: {s.name}": campaign.still(s) for s in campaign.read}
+    known = frozenset(name for name, holds in facts.items() if holds)
     rise = max(float(np.median((T - room)[fine])), 1.0)
     powers = {part: sum(float(np.median(np.abs(values[p][fine]))) for p in paths) for part, paths in does.items()}
-    return Ranges(low, mid, high, max(loss, 1e-3), rise, frozenset(known), powers)
+    return Ranges(low, mid, high, max(loss, 1e-3), rise, known, powers)

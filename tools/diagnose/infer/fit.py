@@ -76,10 +76,7 @@ class Fit:
 
     def scatter(self, problem: Problem) -> np.ndarray:
         """Covariance (M, M) of the readings' scatter and of what the forms leave of the causes' effects."""
-        V = self.noise.covariance
-        if self.form:
-            V = V + self.form**2 * _rough(problem, self.effects)
-        return V
+        return self.noise.covariance + self.form**2 * _rough(problem, self.effects)
 
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
@@ -211,14 +208,14 @@ def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
 
 def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
     """A look where the fit begins, nearer to the file where it cannot be run there."""
-    for share in (1.0, 0.5, 0.2, 0.05):
-        try:
-            smaller = [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting]
-            return problem.look(share * z, smaller)
-        except SolveError:
-            if share == 0.05 or not acting:
-                raise
-    raise AssertionError("unreachable")
+
+    def at(share: float) -> Look:
+        return problem.look(share * z, [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting])
+
+    for share in (1.0, 0.5, 0.2) if acting else ():
+        with suppress(SolveError):
+            return at(share)
+    return at(0.05 if acting else 1.0)
 
 
 def _cost(problem: Problem, vector: Vector, white: White, look: Look) -> float:

@@ -6,12 +6,10 @@ Its static pictures are SVG text.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ...show import pages
 from ...show.drawing import COLOURS, empty, legend, svg
@@ -19,6 +17,10 @@ from ..answer.evidence import Picture, Rows, View
 from ..answer.findings import Findings
 from . import phrases, tables
 from .phrases import name_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 #: Least probability of a bar.
 LITTLE = 0.01

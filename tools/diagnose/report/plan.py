@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from ....model.core.faults import name_all
 from ...show.drawing import COLOURS, empty, legend
@@ -11,6 +11,9 @@ from . import phrases
 from .phrases import name_of, names_of
 from .screen import drawn, paragraph
 from .tables import Table, tell_design
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: Experiments on the screen and in the picture.
 SHOWN = 10

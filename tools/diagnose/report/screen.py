@@ -39,8 +39,9 @@ def text(findings: Findings, *, everything: bool = False, width: int | None = No
         ("do now", said.do),
         ("size", said.size),
         ("how sure", said.sure),
+        ("cannot be", said.cannot_be),
+        *(("data", line) for line in said.data),
     ]
-    lines += [("cannot be", said.cannot_be), *(("data", line) for line in said.data)]
     if findings.gain is not None:
         lines.append(("gain", f"{phrases.gain(findings.gain)}."))
     shown = findings.warnings if everything else findings.warnings[:WARNINGS]
