@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.steady import steady
-from gearheat.scenarios.load import list_rigs
+from gearheat.scenarios.load import list_rigs, load
 from gearheat.tools.diagnose.library.cause import Row, as_array
 from gearheat.tools.diagnose.library.check import parameters, problems
-from gearheat.tools.diagnose.library.forms import BY_LAW
+from gearheat.tools.diagnose.library.extras import thin_film_friction
+from gearheat.tools.diagnose.library.forms import BY_LAW, Context
 from gearheat.tools.diagnose.library.registry import library
+from gearheat.tools.diagnose.report.extension import Applied, calibration, extended
 
 RIGS = tuple(list_rigs())
 ROWS = 4
@@ -31,6 +33,19 @@ def test_forms_are_sound_and_neutral_at_size_zero(case, rig):
     c = case(rig)
     assert len({x.id for x in c.causes}) == len(c.causes)
     assert [p for x in c.causes for p in problems(x, c.scenario.spec, c.sensors, c.ranges)] == []
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_a_rig_with_what_causes_and_calibration_add_is_a_rig(case, rig, tmp_path):
+    c, added = case(rig), {}
+    for cause, form in ((x, f) for x in c.causes for f in x.forms if f.parts and not f.spread):
+        theta = {s.name: (s.low + s.high) / 2 for s in form.shapes} | {cause.size.name: cause.size.sd}
+        added.setdefault(form.connections, Applied(cause.id, cause.doc, form, theta))
+    films = thin_film_friction(Context(c.roles, c.ranges, c.sensors))
+    also = [calibration(films, dict.fromkeys(films.paths, 0.1))] if films else []
+    (path := tmp_path / "extended.toml").write_text(extended(c.scenario, {}, [*added.values()], "x", 1, also).text({}))
+    parts = {p.name for p in load(path).spec.parts} - {p.name for p in c.scenario.spec.parts}
+    assert len(parts) > len(also) and all(name.startswith("found_") for name in parts)
 
 
 class Symbols(Mapping):

@@ -118,6 +118,8 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
     assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
     assert told[oil].condition.startswith("A, ")
     assert "rpm" in told[oil].condition
+    again[oil][[0, 1]] = np.nan  # its cells are empty
+    assert {p.channel for p in list_repeats(short)} == {s.name for s in data.read} - {oil}
 
 
 def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:

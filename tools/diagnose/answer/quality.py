@@ -159,6 +159,8 @@ def list_repeats(campaign: Campaign) -> tuple[RepeatedPoint, ...]:
         tests = [int(np.flatnonzero(campaign.order == order)[0]) for order in group.order]
         for sensor in campaign.read:
             unit, values = channels.difference(sensor, 1.0), (group.total[sensor.name], group.difference[sensor.name])
+            if np.isfinite(values[0]).sum() < 2:  # cells of this sensor are empty
+                continue
             sums, apart = (unit * (v - np.nanmean(v)) for v in values)
             told.append(
                 RepeatedPoint(

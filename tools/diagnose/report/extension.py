@@ -231,7 +231,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
     def at(x: np.ndarray) -> Extended:
         z, acting = Vector(found.problem, h.fit.look.acting).split(x)
         told = values(found, z)
-        added = [_calibration(n, told) for n in found.problem.data.nuisances if n.parts]
+        added = [calibration(n, told) for n in found.problem.data.nuisances if n.parts]
         causes = [Applied(a.id, a.formula.cause.doc, a.formula.form, a.formula.theta(a.t)) for a in acting]
         return extended(scenario, told, causes, data.name, len(oils), added)
 
@@ -240,7 +240,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
     return at(x).text(uncertain)
 
 
-def _calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:
+def calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:
     """What calibration adds to a rig, as if it were a cause."""
     own = {path: told[path] for path in nuisance.paths}
     form = Form(parts=nuisance.parts, connections=nuisance.connections, values=lambda theta, row: own)
