@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 import typing
+from collections.abc import Callable
 from pathlib import Path
 
 import gearheat as gh
@@ -136,6 +138,19 @@ def test_designs_sweeps_and_maps(rig: gh.Rig, tmp_path: Path) -> None:
     points = gh.map("helical_two_stage", grid="2x2")
     assert len(points.save(tmp_path / "map.csv").read_text().splitlines()) == 5
     assert gh.rating("helical_two_stage", {"oil.T": "95 degC"}, grid="2x2").as_dict()["limit"].startswith("oil.T")
+
+
+@pytest.mark.parametrize(
+    ("ask", "told"),
+    [
+        (lambda rig: gh.sweep(rig, {"room.T": ["0 degC"]}, sample=2), "--vary room.T: give its lowest and highest"),
+        (lambda rig: gh.sweep(rig, {"room.T": [280, 300]}, sample=2, jobs=-1), "--jobs -1 is below zero"),
+        (lambda rig: gh.losses(rig, temperature="oil"), '--temperature oil is not known. Choose "measured"'),
+    ],
+)
+def test_what_nobody_can_mean_is_said(rig: gh.Rig, ask: Callable[[gh.Rig], object], told: str) -> None:
+    with pytest.raises(gh.GearheatError, match=re.escape(told)):
+        ask(rig)
 
 
 def test_an_fmu_is_written_and_played(rig: gh.Rig, duty: Path, tmp_path: Path) -> None:

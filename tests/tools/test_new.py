@@ -15,6 +15,7 @@ from gearheat.scenarios.entries import catalogue
 from gearheat.scenarios.load import load
 from gearheat.tools.build import sizing
 from gearheat.tools.build.bearings import LIFE
+from gearheat.tools.build.new import new
 from gearheat.tools.solve.settings import flat_of
 
 FORCES = ("F_t", "F_r", "F_a")
@@ -417,6 +418,22 @@ def test_a_data_sheet_takes_the_place_of_the_rules(gearheat, tmp_path):
     assert answer.json["usual"]["efficiency_pct"][0] < 100 * answer.json["efficiency"]
     assert sum(answer.json["losses_W"].values()) == pytest.approx(answer.json["loss_W"], rel=1e-6)
     assert answer.json["no_load_W"] < answer.json["loss_W"]
+
+
+@pytest.mark.parametrize("base", ["concrete", "flange"])
+@pytest.mark.parametrize(("stages", "ratio"), [("helical", 7.5), ("spur", 8), ("planetary", 5), ("worm", 60)])
+@pytest.mark.parametrize("speed", ["60 rpm", "6000 rpm"])
+def test_the_smallest_gearboxes(tmp_path, stages, ratio, speed, base):
+    for power in ("5 W", "0.1 kW", "0.4 kW"):
+        rig = new("a", stages=stages, ratio=ratio, power=power, speed=speed, base=base, out=tmp_path / f"{power}.toml")
+        assert rig.sizes["ratio"] == pytest.approx(ratio, rel=0.05)
+
+
+def test_a_centre_distance_that_holds_no_gears(gearheat, tmp_path):
+    plate = ("--stages", "helical", "--ratio", "7.5", "--power", "1 kW", "--speed", "1450 rpm")
+    answer = gearheat("new", "a", *plate, "--centre-distance", "15 mm", "-o", tmp_path / "a.toml")
+    assert answer.code == 2
+    assert "--centre-distance of 15 mm holds no gears" in answer.err and "mm or more" in answer.err
 
 
 def test_a_file_that_is_there_stays(gearheat, tmp_path):

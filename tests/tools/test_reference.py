@@ -12,12 +12,14 @@ from typing import ClassVar
 import pytest
 from gearheat.model.core.component import equation
 from gearheat.model.core.declare import Output, Parameter
+from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts.friction import Friction
 from gearheat.scenarios.load import load
 from gearheat.tools.cli.app import app
 from gearheat.tools.rating.gather import machine_of
 from gearheat.tools.rating.methods import METHODS
+from gearheat.tools.rating.rate import rate_by_method
 from typer.testing import CliRunner
 
 RIG = "helical_two_stage"
@@ -35,6 +37,11 @@ def compared():
         return json.loads(result.stdout)
 
     return answer
+
+
+def test_an_unknown_method():
+    with pytest.raises(ScenarioError, match='there is no "iso14179-3"'):
+        rate_by_method(RIG, "iso14179-3")
 
 
 @pytest.mark.parametrize("method", METHODS)

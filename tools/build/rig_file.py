@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...model.errors import ScenarioError, suggestion
+from ...model.parts.joints import PRESSED
 from ...model.units import to_si
 from . import sizing
 from .bearings import LIGHT
@@ -47,6 +48,8 @@ BASES = ("concrete", "steel", "flange", "free")
 BOLTS = 4
 #: Diameter of a bolt over the wall's thickness [1].
 BOLT = 1.5
+#: Share of a face that bolts press at most [1]: M6 to M16 press .12 to .19 of flanges of 120 to 350 mm (IEC 60072-1).
+HELD = 0.15
 #: Width of the two strips that a foot stands on over that of the housing [1].
 STRIPS = 2 * 0.15
 #: Inner over outer diameter of the ring on which a flange stands [1].
@@ -55,8 +58,6 @@ SPIGOT = 0.77
 FRAME = 2.0
 #: How far it reaches beyond foot or flange, at either end, over their length [1].
 BEYOND = 0.5
-#: How a foot or flange is held.
-_BOLTED = f"{BOLTS} bolts {BOLT:g} times as thick as the walls, 0.2 mm of air beside them"
 #: Speed at which churning is stated, 200 rpm [rad/s].
 CHURNED = 200 * math.pi / 30
 
@@ -227,18 +228,27 @@ def _cooler(made: Unit, efficiency: float) -> float:
     return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
 
 
+def _bolted(made: Unit, A: float) -> tuple[float, str]:
+    """Diameter of the bolts [m] that hold a face [m2], and how it follows."""
+    d, most = BOLT * made.wall, math.sqrt(HELD * A / (BOLTS * PRESSED))
+    words = f"{BOLT:g} times as thick as the walls" if d < most else f"that press {HELD:g} of the face"
+    return min(d, most), f"{BOLTS} bolts {words}, 0.2 mm of air beside them"
+
+
 def _foot(made: Unit, base: str) -> dict[str, Any] | None:
     """Foot of a unit, two strips along the housing, or its flange, and what they stand on."""
     if base == "free":
         return None
     if base == "flange":
         D, wide = min(made.length, made.height), 1 + 2 * BEYOND
-        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {_BOLTED}"
+        A = math.pi / 4 * (1 - SPIGOT**2) * D**2
+        d, bolts = _bolted(made, A)
+        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {bolts}"
         return {
             "base": base,
-            "A": math.pi / 4 * (1 - SPIGOT**2) * D**2,
+            "A": A,
             "count": BOLTS,
-            "d": BOLT * made.wall,
+            "d": d,
             "A_frame": 2 * math.pi / 4 * (wide**2 - 1) * D**2,
             "t_frame": FRAME * made.wall,
             "L_frame": BEYOND * D,
@@ -249,12 +259,13 @@ def _foot(made: Unit, base: str) -> dict[str, Any] | None:
         "concrete": "heat spreads below its outline into a concrete floor",
         "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
     }
-    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {_BOLTED}"
+    d, bolts = _bolted(made, STRIPS * outline)
+    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {bolts}"
     return {
         "base": base,
         "A": STRIPS * outline,
         "count": BOLTS,
-        "d": BOLT * made.wall,
+        "d": d,
         "outline": outline,
         "A_frame": 2 * 2 * beyond * made.width,
         "t_frame": FRAME * made.wall,

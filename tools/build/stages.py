@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ...model.errors import ScenarioError
 from ...model.laws.worm import worm_base_friction, worm_mean_friction, worm_size_factor
 from ...model.parts.gears import HelicalGearPair, InternalGearPair
 
@@ -20,6 +21,8 @@ K_STAR = 2.5e6
 WIDTH = 0.8
 #: Least number of teeth of a pinion.
 TEETH = 19
+#: Of one for a load that hardly needs gears at all; fewer are undercut without profile shift.
+FEWEST = 9
 #: Load intensity of case-hardened bevel gears on their virtual gears [Pa].
 K_BEVEL = 2.0e6
 #: Face width of bevel gears over the outer cone distance [1].
@@ -257,14 +260,17 @@ class PlanetaryStage(Stage):
 
 def _cylindrical(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> Stage:
     """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
-    d_1 = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3)
-    a = a or _standard(d_1 * (1 + u) / 2)
+    d_1, aim = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3), KINDS[kind]
+    least = FEWEST * MODULES[0] / 1000 / math.cos(aim) * (1 + u) / 2
+    if a is not None and a < least:
+        said = f"{1000 * a:g} mm holds no gears of {MODULES[0]:g} mm modules with a ratio of {u:.3g}"
+        raise ScenarioError(f"--centre-distance of {said}. Give {1000 * least:.3g} mm or more.")
+    a = a or _standard(max(d_1 * (1 + u) / 2, least / SHORT))
     d_1 = 2 * a / (1 + u)
-    aim = KINDS[kind]
     m_n = max((m for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH), default=MODULES[0]) / 1000
     teeth = round(2 * a * math.cos(aim) / m_n)
     near = round(teeth / (1 + u))
-    z_1 = min(range(max(8, near - 2), near + 3), key=lambda z: _fault(z, teeth - z, u))
+    z_1 = min(range(max(FEWEST, near - 2), near + 3), key=lambda z: _fault(z, teeth - z, u))
     if aim:
         while teeth * m_n >= 2 * a:
             teeth -= 1
@@ -315,7 +321,7 @@ def _planetary(kind: str, u: float, T: float, n: float, x: float, a: float | Non
     sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
     z_1, z_3 = min(sizes, key=lambda size: (round(abs(1 + size[1] / size[0] - u) / u, 2), size[0]))
     m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
-    b = round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)) / 1000
+    b = max(round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)), 1) / 1000
     return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, x + b / 2, z_3)
 
 

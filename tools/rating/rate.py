@@ -9,7 +9,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 from ...model.core.flat import Quantity
-from ...model.errors import Problems
+from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.parts.ports import COLDEST, HOTTEST
 from ...model.run.result import Outside
 from ...model.sources import LawInfo, LawUse, recording
@@ -68,7 +68,10 @@ def rate_by_method(
         >>> gh.rate_by_method("helical_two_stage", "iso14179-1").found["rating"]["limit_C"]
         95.0
     """
-    known = METHODS[method]
+    if (known := METHODS.get(method)) is None:
+        raise ScenarioError(
+            f'--method: there is no "{method}".{suggestion(method, METHODS)} Known: {", ".join(METHODS)}.'
+        )
     T_limit = in_range("", limit, LIMIT)
     k_given = None if k is None else in_range("", k, K)
     scenario = adjust(scenario_of(rig), set)

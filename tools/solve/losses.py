@@ -71,6 +71,8 @@ def losses(
     """
     scenario = scenario_of(rig)
     flows = _flow_paths(scenario)
+    if temperature not in ("measured", "model"):
+        raise ScenarioError(f'--temperature {temperature} is not known. Choose "measured" or "model".')
     if power_flow is not None and not flows:
         raise ScenarioError(f"{scenario.name}: no part has a choice of power flow. Leave out --power-flow.")
     chosen = [f"{path}={power_flow}" for path in flows if power_flow is not None]

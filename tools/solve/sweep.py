@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...fmu.batch import Status
-from ...model.errors import SolveError
+from ...model.errors import ScenarioError, SolveError
 from ...model.files import flows
 from ...model.units import from_si, show_unit
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
@@ -161,6 +161,8 @@ def sweep(
     texts, counts = list(vary), []
     if isinstance(vary, Mapping):
         known = scenario.settable()
+        if odd := [n for n, ends in vary.items() if len(ends) not in (2, 3)]:
+            raise ScenarioError(f"--vary {odd[0]}: give its lowest and highest value, and of a grid how many points.")
         texts = [f"{n}={spell(ends[0], known.get(n))}..{spell(ends[1], known.get(n))}" for n, ends in vary.items()]
         counts = [str(ends[2]) for ends in vary.values() if len(ends) > 2]
     with duty_file(duty) if duty is not None else nullcontext() as path, tempfile.TemporaryDirectory() as folder:

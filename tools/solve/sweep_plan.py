@@ -197,6 +197,8 @@ def _problems(request: Request) -> Problems:
         found.append("Give the number of rows either by --sample N or by --grid NxM.")
     if request.method not in ("lhs", "monte-carlo"):
         found.append(f'--method {request.method} is not known. Choose "lhs" or "monte-carlo".')
+    if request.jobs < 0:
+        found.append(f"--jobs {request.jobs} is below zero. Give how many threads, or 0 for one per core.")
     timed = [option for option in ("duty", "duration", "every") if getattr(request, option) is not None]
     if request.kind == "steady" and timed:
         found.append(f"--{timed[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
