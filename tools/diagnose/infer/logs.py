@@ -10,6 +10,7 @@ import numpy as np
 
 from ....model.machines.roles import Roles
 from ....scenarios.measured.logs import Log
+from ....scenarios.measured.nominal import drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
@@ -69,11 +70,12 @@ class Fleet:
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
-    """A rig and its knobs, compiled for logs with the sensors of one."""
-    roles = Roles.of(scenario.spec)
+    """A rig, driven by what logs give, and its knobs, compiled for logs with the sensors of one."""
+    driven = drive_by(scenario, log.sensors).spec
+    roles = Roles.of(driven)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
-    spec = scenario.spec.with_values(relays)
-    known = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
+    spec = driven.with_values(relays)
+    known = {f"{part.name}.{key}" for part in driven.parts for key in part.values}
     found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
     plant = Plant(spec.flat(), paths, [s.reads for s in log.given], [s.reads for s in log.read])
@@ -154,9 +156,10 @@ def independent(passed: Passed) -> float:
     e = np.clip(passed.error / np.sqrt(passed.variance), -3.0, 3.0)
     e = e - np.nanmean(e, axis=(0, 1))
     own = np.nanmean(e**2, axis=(0, 1))
+    most = int(np.isfinite(e).any(axis=2).sum(axis=1).max())  # samples that count in the longest window
     shares = []
     for j in range(e.shape[2]):
-        lags = [float(np.nanmean(e[:, k:, j] * e[:, :-k, j]) / own[j]) for k in range(1, min(MEMORY, e.shape[1] - 1))]
+        lags = [float(np.nanmean(e[:, k:, j] * e[:, :-k, j]) / own[j]) for k in range(1, min(MEMORY, most - 1))]
         first = next((k for k, rho in enumerate(lags) if rho < CORRELATED), len(lags))
         shares.append(1 / (1 + 2 * sum(lags[:first])))
     return float(np.mean(shares))

@@ -123,7 +123,8 @@ class Filter:
         thermal = np.array([q.unit == "K" for q in self.plant.flat.states])
         own = [q.name.rpartition(".")[2] == "T" for q in self.plant.flat.states]
         first = _first(data.read) - offset
-        x[:, thermal & np.array(own)] = np.nanmean(first, axis=1)[:, None]
+        if (read := self.state_of >= 0).any():
+            x[:, thermal & np.array(own)] = np.nanmean(first[:, read], axis=1)[:, None]
         sd = np.where(thermal, UNREAD, 0.0)
         for j, state in enumerate(self.state_of):
             if state >= 0:
