@@ -123,7 +123,7 @@ def watch(
     state: Path | None = None,
     every: int = 250,
     once: bool = False,
-    alpha: float = 0.05,
+    alpha: float = 0.01,
     page: Path | None = None,
     publish: str = "",
     scheduler: str | None = None,

@@ -109,7 +109,7 @@ def _teeth(roles: Roles) -> Iterator[Knob]:
 
 
 def _parts(
-    roles: Roles, *, what: str, cause: str, role: str = "", group: str = "", shifted: Sequence[str] = (), **said: Any
+    roles: Roles, *, what: str, cause: str, role: str = "", group: str = "", keys: Sequence[str] = (), **said: Any
 ) -> Iterator[Knob]:
     """Knobs of all parts of a role, of a group but for jets, or of those that declare a cause of their own.
 
@@ -118,7 +118,7 @@ def _parts(
         what: differs, in words
         cause: that it is where it has moved
         role, group: whose parts
-        shifted: parameters that are shifted; without, a factor
+        keys: parameters that are shifted where there is a unit, else multiplied; without, what the part is scaled by
         said: what else the table says
     """
     if role or group:
@@ -127,8 +127,9 @@ def _parts(
     else:
         found = roles.failing(cause)
     for name, paths in found.items():
-        moved = tuple(f"{name}.{key}" for key in shifted)
-        yield Knob(f"{name}: {what}", cause, scaled={} if moved else paths, shifted=moved, **said)
+        own = tuple(f"{name}.{key}" for key in keys)
+        ways = {"shifted": own} if "unit" in said else {"scaled": dict.fromkeys(own, 1.0) or paths}
+        yield Knob(f"{name}: {what}", cause, **ways, **said)
 
 
 def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:

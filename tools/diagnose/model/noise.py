@@ -42,24 +42,12 @@ BEGUN = 3.0
 FADING = (1, 2, 4, 8, 16)
 
 
-def reading_scatter(o: Measured) -> Iterator[tuple[str, np.ndarray]]:
-    """Scatter of each compared sensor from reading to reading: name and variances (m,)."""
-    for i, s in enumerate(o.read):
-        yield s.name, np.where(o.kind == i, s.repeat_sd**2, 0.0)
-
-
 def input_scatter(o: Measured, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
     """Scatter of each given sensor, through the model: name and effects of all rows' readings (m, n)."""
     same = o.campaign.test[o.row][:, None] == o.campaign.test[None, :]
     for g, s in enumerate(o.given):
         effect = seen.local[:, g][:, o.half]  # m, n: by the reading of each row's half, in the entry's own test
         yield s.name, s.repeat_sd * effect * same
-
-
-def read_tolerance(o: Measured) -> Iterator[tuple[str, np.ndarray]]:
-    """Fixed tolerance of each compared sensor: name and effect (m,)."""
-    for i, s in enumerate(o.read):
-        yield s.name, np.where(o.entries.sensor == i, s.offset_sd, 0.0)
 
 
 def given_tolerance(o: Measured, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
@@ -191,12 +179,13 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
     """
     sizes = [o.m for o in campaigns]
     pairs = list(enumerate(zip(campaigns, seen, strict=True)))
-    read = by_name([(name, k, v[:, None]) for k, (o, _) in pairs for name, v in reading_scatter(o)], sizes)
+    each = [(k, o, i, s) for k, (o, _) in pairs for i, s in enumerate(o.read)]
+    read = by_name([(s.name, k, np.where(o.kind == i, s.repeat_sd**2, 0.0)[:, None]) for k, o, i, s in each], sizes)
     found = [Term(f"readings of {name}", variance=v.sum(axis=1), loose=READING) for name, v in read.items()]
     inputs = [(n, k, c) for k, (o, s) in pairs for n, c in input_scatter(o, s)]
     given = by_name(sorted(inputs, key=lambda part: part[0]), sizes)
     found += [Term(f"readings of {name}", columns, loose=INPUT) for name, columns in given.items()]
-    fixed = [(n, k, c[:, None]) for k, (o, _) in pairs for n, c in read_tolerance(o)]
+    fixed = [(s.name, k, np.where(o.entries.sensor == i, s.offset_sd, 0.0)[:, None]) for k, o, i, s in each]
     fixed += [(n, k, c[:, None]) for k, (o, s) in pairs for n, c in given_tolerance(o, s)]
     tied = {name: columns.sum(axis=1, keepdims=True) for name, columns in by_name(fixed, sizes).items()}
     found += [Term(f"tolerance of {name}", column) for name, column in tied.items()]
@@ -226,7 +215,8 @@ def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
     for name, made in (("courses", smoothed), ("model of courses", model_error)):
         yield Term(name, covariance=block_diag(*map(made, campaigns)))
     yield Term("starts", stacked([(k, start_error(o)) for k, o in enumerate(campaigns)], sizes))
-    yield Term("dwells as logged", variance=np.concatenate([dwells(o) for o in campaigns]))
+    stated = np.concatenate([o.entries.sensor < 0 for o in campaigns])
+    yield Term("dwells as logged", variance=DWELL**2 * stated)
 
 
 def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], points: int) -> np.ndarray:
@@ -295,11 +285,6 @@ def start_error(o: Measured) -> np.ndarray:
     room = [s.repeat_sd for s in o.given if s.kind == "ambient"]
     fades = along(o) * np.exp(-BEGUN * shares(o)) * (room[0] if room else 0.0)
     return np.asarray(fades[:, None] * (o.row[:, None] == np.unique(o.row[along(o)])))
-
-
-def dwells(o: Measured) -> np.ndarray:
-    """Variance (m,) of dwells as logged."""
-    return np.where(o.entries.sensor < 0, DWELL**2, 0.0)
 
 
 def fading(o: Measured, linear: np.ndarray) -> np.ndarray:

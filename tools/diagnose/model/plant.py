@@ -164,7 +164,8 @@ def _compiled(
     Raises:
         FmuError: the compiler fails
     """
-    cut, symbols, constants = hoist([ca.vec(ca.SX(r).nz[:]) for found in results.values() for r in found], arguments[-1])
+    entries = [ca.vec(ca.SX(r).nz[:]) for found in results.values() for r in found]
+    cut, symbols, constants = hoist(entries, arguments[-1])
     every, names, texts, rest = {"constants": [constants]}, ["i0", "i1", "i2", "i3"], [], iter(cut)
     every |= {name: list(islice(rest, len(found))) for name, found in results.items()}
     for name, found in every.items():
