@@ -43,3 +43,14 @@ def test_a_value_at_its_bound_has_no_standard_error(gearheat, made):
     assert found["free"]["cooling.A"]["value"] == pytest.approx(0.7, rel=1e-3)
     assert found["free"]["cooling.A"]["at_bound"] and found["free"]["cooling.A"]["standard_error"] is None
     assert found["free"]["foot.G"]["standard_error"] > 0
+
+
+def test_empty_cells_take_no_part(gearheat, made):
+    head, first, *rest = (table := made.folder / "measured.csv").read_text().splitlines()
+    cells = first.split(",")
+    cells[head.split(",").index("T_oil_C")] = ""
+    table.write_text("\n".join([head, ",".join(cells), *rest]) + "\n")
+    found = gearheat("calibrate", made, "--grid", "MINR-5", "--free", "cooling.A", "--json", "-").json
+    assert found["readings"] == 9
+    assert len(gearheat("losses", made, "--json", "-").json["rows"]) == 9
+    assert len(gearheat("losses", made, "--temperature", "model", "--json", "-").json["rows"]) == 10

@@ -175,7 +175,8 @@ def fit_parameters(
     scale = np.where(start != 0, np.abs(start), [q.nominal for q in quantities])
     if (sensor := study.oil_sensor) is None:
         raise DataError(f"{study.campaign.name}: no temperature of the gearbox was read to fit to.")
-    measured = study.campaign.values[sensor.name][[row for run in runs for row in run.rows]]
+    column = study.campaign.values[sensor.name][[row for run in runs for row in run.rows]]
+    measured = column[known := np.isfinite(column)]  # cells may be empty
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
@@ -183,7 +184,7 @@ def fit_parameters(
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
             simulated = [_make_simulation(player, study, run, sensor.reads, values) for run in runs]
-            return np.asarray(np.concatenate(simulated) - measured)
+            return np.asarray(np.concatenate(simulated)[known] - measured)
 
         low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
         first = errors(start / scale)

@@ -129,7 +129,9 @@ def at_readings(study: Measured, temperature: str) -> list[dict[str, Any]]:
     scenario, campaign = study.scenario, study.campaign
     if (sensor := study.oil_sensor) is None:
         raise DataError(f"{campaign.name}: no temperature of the gearbox was read. Use --temperature model.")
-    flat, kept = flat_of(scenario), study.read_rows
+    flat, kept = flat_of(scenario), np.array(study.read_rows)
+    if temperature == "measured":
+        kept = kept[np.isfinite(campaign.values[sensor.name][kept])]  # cells may be empty
     values = [study.oil(int(campaign.test[row])) | study.given(row) for row in kept]
     T_read = campaign.values[sensor.name][kept]
     if temperature == "model":
