@@ -286,7 +286,7 @@ def _pictures(
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:
         """Measured less simulated, free-running: means of the windows (n, reads)."""
-        return np.asarray(np.nanmean(own.run(data, level + moves, free=True, slopes=False).error, axis=1))
+        return _means(own.run(data, level + moves, free=True, slopes=False).error)
 
     def whole(part: np.ndarray) -> np.ndarray:
         """Past and present in the order of time; the past is as it is."""
@@ -297,7 +297,7 @@ def _pictures(
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
     counted = [np.where(d.counts[:, :, None], d.read, np.nan) for d in (past, now)]
-    measured = np.concatenate([np.nanmean(c, axis=1) for c in counted if len(c)])[by_time].T
+    measured = np.concatenate([_means(c) for c in counted])[by_time].T
     shown = {}
     for j, s in enumerate(read):
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]
@@ -307,7 +307,13 @@ def _pictures(
     time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(days))
     found = []
     for cause, e in after.items():
-        best = int(np.argmax(np.nanmean(before**2 - e**2, axis=0)))  # where most is taken away
+        best = int(np.argmax(np.nansum(before**2 - e**2, axis=0)))  # where most is taken away
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found)
+
+
+def _means(values: np.ndarray) -> np.ndarray:
+    """Means of windows (n, L, reads) over their samples (n, reads), NaN where a reading has none."""
+    count = np.isfinite(values).sum(axis=1)
+    return np.asarray(np.nansum(values, axis=1) / np.where(count > 0, count, np.nan))

@@ -83,6 +83,25 @@ def test_a_single_reading_that_many_bodies_move(tmp_path: Path) -> None:
     assert gh.diagnose(None, "actuator", logs=now, reference_logs=past, quick=True).verdict == "consistent"
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_thermometer_that_ends(tmp_path: Path) -> None:
+    path = record(tmp_path / "now.csv", load("helical_two_stage"), 1)
+    head, *rows = [line.split(",") for line in path.read_text().splitlines()]
+    ended = [[*row] if k < 300 else ["" if name == "T_wall_C" else cell for name, cell in zip(head, row, strict=True)]
+             for k, row in enumerate(rows)]  # fmt: skip
+    path.write_text("".join(",".join(row) + "\n" for row in [head, *ended]))
+    found = gh.diagnose(None, "helical_two_stage", logs=path, quick=True)
+    assert found.verdict == "consistent"
+    assert None in found.rows.channels["T_wall"].measured
+
+
+@pytest.mark.filterwarnings("error")
+def test_errors_that_are_always_the_same_count_once() -> None:
+    error = np.full((2, 36, 1), 50.0)
+    none = np.zeros((2, 1))
+    assert np.isfinite(independent(Passed(none, none[:, :, None], error, np.ones_like(error), error)))
+
+
 def test_another_oil_is_named(tmp_path: Path) -> None:
     scenario = load("cycloidal")
     past = record(tmp_path / "past.csv", scenario, 1)

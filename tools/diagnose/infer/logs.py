@@ -155,7 +155,7 @@ def independent(passed: Passed) -> float:
     """Share of the samples that count as independent: one over the sum of the errors' correlations in time."""
     e = np.clip(passed.error / np.sqrt(passed.variance), -3.0, 3.0)
     e = e - np.nanmean(e, axis=(0, 1))
-    own = np.nanmean(e**2, axis=(0, 1))
+    own = np.nanmean(e**2, axis=(0, 1)) + 1e-12
     most = int(np.isfinite(e).any(axis=2).sum(axis=1).max())  # samples that count in the longest window
     shares = []
     for j in range(e.shape[2]):
