@@ -101,6 +101,10 @@ class Result:
             raise ScenarioError(f'{self.model}: the result has no "{name}".{suggestion(name, self.columns)}')
         return self.columns[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Paths of its columns."""
+        return iter(self.columns)
+
     def at(self, moment: float) -> dict[str, float]:
         """All columns at one time, linear between rows."""
         return {name: float(np.interp(moment, self.index, column)) for name, column in self.columns.items()}

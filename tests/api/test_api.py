@@ -70,6 +70,7 @@ def test_a_steady_state_by_texts_numbers_and_quantities(rig: gh.Rig) -> None:
     assert hot["oil.T"] == gh.steady("planetary", ["room.T=35 degC"])["oil.T"]
     assert hot.to("oil.T", "degC") == pytest.approx(hot["oil.T"] - 273.15)
     assert sum(hot.losses().values()) == pytest.approx(hot["efficiency.P_loss"])
+    assert "oil.T" in hot and "oil.X" not in hot and set(hot) >= {"oil.T", "wall.T"}
     assert isinstance(hot.plot(), Axes)
 
 

@@ -205,31 +205,26 @@ def check(data: Logs) -> None:
 
 
 def _lacking(data: Logs) -> str:
-    if data.reference and data.siblings:
-        return ""
-    lacks = " and ".join(
-        name for name, logs in (("--reference-logs", data.reference), ("--sibling-logs", data.siblings)) if not logs
-    )
-    return f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
+    given = {"--reference-logs": data.reference, "--sibling-logs": data.siblings}
+    lacks = " and ".join(name for name, logs in given.items() if not logs)
+    said = "it is not known how healthy machines of this type differ: changes are judged by priors"
+    return f"without {lacks} {said}" if lacks else ""
 
 
 def _gross(logs: Sequence[Log]) -> list[GrossReading]:
-    found = []
-    for log in logs:
-        for g in log.gross:
-            row = int(np.searchsorted(log.lines, g.line)) + 1
-            found.append(
-                GrossReading(
-                    row=row,
-                    line=g.line,
-                    channel=g.column,
-                    size_sd=g.size_sd,
-                    shown=g.shown - 273.15,
-                    expected=g.expected - 273.15,
-                    unit="degC",
-                )
-            )
-    return found
+    return [
+        GrossReading(
+            row=int(np.searchsorted(log.lines, g.line)) + 1,
+            line=g.line,
+            channel=g.column,
+            size_sd=g.size_sd,
+            shown=g.shown - 273.15,
+            expected=g.expected - 273.15,
+            unit="degC",
+        )
+        for log in logs
+        for g in log.gross
+    ]
 
 
 def _gain(
@@ -296,8 +291,7 @@ def _pictures(
     causes = decision.leader.causes
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
-    counted = [np.where(d.counts[:, :, None], d.read, np.nan) for d in (past, now)]
-    measured = np.concatenate([_means(c) for c in counted])[by_time].T
+    measured = np.concatenate([_means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
     shown = {}
     for j, s in enumerate(read):
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]

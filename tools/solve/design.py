@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -65,6 +65,10 @@ class DesignAnswer(Quantities, Answer):
         if name not in self.state:
             raise ScenarioError(f'{self.setting.name}: the design has no "{name}".{suggestion(name, self.state)}')
         return self.state[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of its values."""
+        return iter(self.state)
 
     @property
     def title(self) -> str:

@@ -67,6 +67,10 @@ class TimeSeries(Columns):
             raise ScenarioError(f'{self.name}: there is no column "{name}".{suggestion(name, self.columns)}')
         return self.columns[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Paths of its columns."""
+        return iter(self.columns)
+
     def to(self, name: str, unit: str) -> np.ndarray:
         """A column in a unit.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -56,8 +56,12 @@ class SteadyState(Quantities):
     far: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> float:
-        """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
+        """Value of a state, input or output in SI. Raises ScenarioError with suggestions for an unknown name."""
         return float(self.result[name][0])
+
+    def __iter__(self) -> Iterator[str]:
+        """Paths of its values."""
+        return iter(self.result)
 
     def losses(self) -> dict[str, float]:
         """Loss power of each part that has one [W]; of a part with several kinds their sum."""
