@@ -113,9 +113,9 @@ def _test(samples: Samples, campaign: Campaign, test: int) -> Iterator[tuple[int
         if len(at) < LEAST:
             return
         time, stated = samples.time[at], campaign.dwell[row]
-        interval = float(np.median(np.diff(time)))
-        begin = float(np.clip(end + campaign.stop[row], time[0] - interval, time[0]))
-        end = float(time[-1])
+        hole = float(np.diff(time).max())  # what is logged with holes tells begin and end no better than by one
+        begin = float(np.clip(end + campaign.stop[row], time[0] - hole, time[0]))
+        end = begin + stated if 0 <= begin + stated - time[-1] <= hole else float(time[-1])
         share = (time - begin) / stated
         found = [c for name, v in samples.values.items() if as_stated and (c := _course(row, name, share, v[at]))]
         yield row, end - begin, found

@@ -65,6 +65,17 @@ def test_scatter_is_that_of_drawn_samples(read, planetary, series) -> None:
     assert np.cov(np.array(drawn).T) == pytest.approx(courses[0].scatter, abs=0.06)
 
 
+def test_a_log_with_holes_does_not_cut_dwells_short(read, planetary, series) -> None:
+    """The first two samples of a test are missing, the last one of its first dwell, and some between."""
+    campaign, whole = read("planetary", planetary), logged()
+    at = np.array(whole["time_s"], dtype=float) / 60
+    kept = ~np.isin(at, [0.0, 5.0, 60.0, 65.0, 70.0, 240.0])
+    found = series(
+        campaign, {name: [v for v, k in zip(column, kept, strict=True) if k] for name, column in whole.items()}
+    )
+    assert found.dwell[:2] == pytest.approx(campaign.dwell[:2])
+
+
 def test_behind_a_dwell_that_was_cut_off_no_course_is_compared(read, planetary, series) -> None:
     campaign = read("planetary", planetary)
     found = series(campaign, logged(first=170.0))
