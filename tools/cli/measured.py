@@ -229,4 +229,5 @@ def print_replays(found: gh.Replays) -> None:
         console.table(title, ["method", *sensors], rows)
         rows = [[m, *(f"{v:.2f}" for v in e[sensors[0]])] for m, e in r.ahead.items()]
         title = f"{r.name}, {sensors[0]}: RMSE [K] by hours ahead"
-        console.table(title, ["method", *(f"{h:g} h" for h in hours)], rows)
+        if known := hours[: len(rows[0]) - 1]:  # no stretch is long enough for the others
+            console.table(title, ["method", *(f"{h:g} h" for h in known)], rows)

@@ -40,14 +40,14 @@ SIDE = 16
 
 @dataclass(frozen=True)
 class Replayed:
-    """Errors of one log: root mean squares by method and sensor, [K].
+    """Errors of one log: root mean squares by method and sensor, in SI.
 
     Args:
         name: of the log
         rows: number of samples
         free: method -> sensor -> error without any correction from the first sample of each stretch
-        ahead: method -> sensor -> error at each of `HOURS`
-        shown: free run of the rig and readings of the longest stretch, sensor -> (2, n)
+        ahead: method -> sensor -> error at each of `HOURS` for which a stretch is long enough
+        shown: free run of the rig and readings of the longest stretch, thermometer -> (2, n)
         time: of that stretch [s] (n,)
     """
 
@@ -85,11 +85,12 @@ class Replays(Display):
         logs = [{"log": r.name, "rows": r.rows, "free_K": r.free, "ahead_K": r.ahead} for r in self.logs]
         return {"hours": HOURS, "logs": logs}
 
-    def drawing(self) -> Picture:
-        """Free run and readings of the longest stretch of the last log."""
+    def drawing(self) -> Picture | None:
+        """Free run and readings of the longest stretch of the last log; None without a thermometer."""
         from ..show.drawing import empty
 
-        r = self.logs[-1]
+        if not (r := self.logs[-1]).shown:
+            return None
         title = f"{r.name}, free run"
         figure, panels = empty(*SIZE, len(r.shown), 1, sharex=True)
         days = (r.time - r.time[0])[:LONGEST] / 86400
@@ -237,7 +238,8 @@ def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
     free["regression with lags"] = _rms(own.read, whole.read - predicted)
     longest = int(lengths.argmax())
     n = lengths[longest]
-    pictured = {s: np.array([shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
+    both = {s: np.array([shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
+    pictured = {s.name: both[s.name] for s in log.read if s.kind.endswith("_temp")}
     return Replayed(log.name, log.n, free, ahead, pictured, log.time[whole.rows[longest, :n]])
 
 
@@ -256,14 +258,20 @@ def _rms(names: Sequence[str], error: np.ndarray) -> dict[str, float]:
 
 def _ahead(own: Filter, log: Log, rivals: Rivals) -> dict[str, dict[str, tuple[float, ...]]]:
     """Errors some hours after the last correction."""
-    steps = [round(h * 3600 / log.step) for h in HOURS]
-    data = windows([log], own.given, own.read, steps[-1], BEFORE)
-    data = data.some(data.counts.sum(axis=1) >= steps[-1])
-    begin = data.counts.argmax(axis=1)
-    shown = _run_freely(own, data)
+    steps = [max(round(h * 3600 / log.step), 1) for h in HOURS]
     found: dict[str, dict[str, tuple[float, ...]]] = {
         m: {} for m in ("rig", "one node", "regression with lags", "last reading")
     }
+    while steps:
+        data = windows([log], own.given, own.read, steps[-1], BEFORE)
+        if (long := data.counts.sum(axis=1) >= steps[-1]).any():
+            break
+        steps.pop()
+    else:
+        return {method: dict.fromkeys(own.read, ()) for method in found}
+    data = data.some(long)
+    begin = data.counts.argmax(axis=1)
+    shown = _run_freely(own, data)
     at = begin[:, None] + np.array(steps) - 1
     regressed = np.array([rivals.regressed(u)[k] for u, k in zip(data.given, at, strict=True)])
     for j, name in enumerate(own.read):

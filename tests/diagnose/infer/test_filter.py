@@ -119,3 +119,12 @@ def test_windows_shorter_than_the_memory_of_errors() -> None:
     passed = Passed(none, none[:, :, None], error, np.ones_like(error), error)
     assert 0.1 < independent(passed) <= 1.5
     assert independent(replace(passed, error=np.where(np.isfinite(error), 1e-3 * error, error))) > 0
+
+
+def test_a_replay_of_a_log_of_some_hours(tmp_path: Path) -> None:
+    """It tells errors as far ahead as the log is long enough for, and draws thermometers alone."""
+    path = record(tmp_path / "log.csv", load("planetary"), 1)
+    (short := tmp_path / "short.csv").write_text("\n".join(path.read_text().splitlines()[:60]) + "\n")
+    first, second = gh.replay("planetary", path, logs=[short]).logs
+    assert [len(log.ahead["rig"]["T_oil"]) for log in (first, second)] == [5, 2]
+    assert set(second.shown) == {"T_oil", "T_oil2", "T_wall"} and "T_sun" in second.free["rig"]
