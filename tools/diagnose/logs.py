@@ -23,7 +23,7 @@ from .infer.weigh import Options, weigh
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
-from .model.windows import Windows
+from .model.windows import Windows, means
 from .report.words import with_words
 from .request import Inputs
 from .setting import Setting
@@ -281,7 +281,7 @@ def _pictures(
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:
         """Measured less simulated, free-running: means of the windows (n, reads)."""
-        return _means(own.run(data, level + moves, free=True, slopes=False).error)
+        return means(own.run(data, level + moves, free=True, slopes=False).error)
 
     def whole(part: np.ndarray) -> np.ndarray:
         """Past and present in the order of time; the past is as it is."""
@@ -291,7 +291,7 @@ def _pictures(
     causes = decision.leader.causes
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
-    measured = np.concatenate([_means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
+    measured = np.concatenate([means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
     shown = {}
     for j, s in enumerate(read):
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]
@@ -305,9 +305,3 @@ def _pictures(
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found)
-
-
-def _means(values: np.ndarray) -> np.ndarray:
-    """Means of windows (n, L, reads) over their samples (n, reads), NaN where a reading has none."""
-    count = np.isfinite(values).sum(axis=1)
-    return np.asarray(np.nansum(values, axis=1) / np.where(count > 0, count, np.nan))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..diagnose.infer.logs import Fleet
-from ..diagnose.model.windows import Windows
+from ..diagnose.model.windows import Windows, means
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +34,8 @@ def expect(known: Fleet, window: Windows) -> Expected:
     z = levels.mean[0] + np.vstack([np.zeros(len(sd)), np.diag(sd)])
     shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, free=True, slopes=False).shown
     read = np.where(window.counts[0, :, None], window.read[0], np.nan)
-    means = np.nanmean(np.where(np.isfinite(read), shown, np.nan), axis=1)
-    by = ((means[1:] - means[0]) / sd[:, None]).T
+    mean = means(np.where(np.isfinite(read), shown, np.nan))
+    by = ((mean[1:] - mean[0]) / sd[:, None]).T
     spread = by @ (levels.covariance[0] + levels.season + levels.window) @ by.T
     alone = np.maximum(known.share * np.isfinite(read).sum(axis=0), 1.0)
-    return Expected(np.nanmean(read, axis=0), means[0], np.sqrt(np.diag(spread) + own.scatter**2 / alone))
+    return Expected(means(read[None])[0], mean[0], np.sqrt(np.diag(spread) + own.scatter**2 / alone))

@@ -84,15 +84,19 @@ def test_a_single_reading_that_many_bodies_move(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_thermometer_that_ends(tmp_path: Path) -> None:
-    path = record(tmp_path / "now.csv", load("helical_two_stage"), 1)
+def test_thermometers_that_end(tmp_path: Path) -> None:
+    """The last window has none."""
+    path, ends = record(tmp_path / "now.csv", load("helical_two_stage"), 1), {"T_wall_C": 300, "T_oil_C": 470}
     head, *rows = [line.split(",") for line in path.read_text().splitlines()]
-    ended = [[*row] if k < 300 else ["" if name == "T_wall_C" else cell for name, cell in zip(head, row, strict=True)]
-             for k, row in enumerate(rows)]  # fmt: skip
-    path.write_text("".join(",".join(row) + "\n" for row in [head, *ended]))
+    for k, row in enumerate(rows):
+        for name, end in ends.items():
+            row[head.index(name)] = "" if k >= end else row[head.index(name)]
+    path.write_text("".join(",".join(row) + "\n" for row in [head, *rows]))
     found = gh.diagnose(None, "helical_two_stage", logs=path, quick=True)
     assert found.verdict == "consistent"
     assert None in found.rows.channels["T_wall"].measured
+    told = [event["event"] for event in gh.watch("helical_two_stage", path, once=True)]
+    assert told.count("window") == 2 and "alarm" not in told
 
 
 @pytest.mark.filterwarnings("error")

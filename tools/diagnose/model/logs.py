@@ -16,7 +16,7 @@ import numpy as np
 from ....fmu.batch_library import share_rows
 from ..library.knobs import Knob
 from .plant import Plant, library, record
-from .windows import Windows
+from .windows import Windows, means
 
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
@@ -121,10 +121,10 @@ class Filter:
         """States at the start (N, nx), and their standard deviations (nx,)."""
         x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
         thermal = np.array([q.unit == "K" for q in self.plant.flat.states])
-        own = [q.name.rpartition(".")[2] == "T" for q in self.plant.flat.states]
+        bodies = thermal & np.array([q.name.rpartition(".")[2] == "T" for q in self.plant.flat.states])
         first = _first(data.read) - offset
         if (read := self.state_of >= 0).any():
-            x[:, thermal & np.array(own)] = np.nanmean(first[:, read], axis=1)[:, None]
+            x[:, bodies] = np.where(np.isfinite(usual := means(first[:, read, None])), usual, x[:, bodies])
         sd = np.where(thermal, UNREAD, 0.0)
         for j, state in enumerate(self.state_of):
             if state >= 0:

@@ -98,3 +98,9 @@ def _held(column: np.ndarray) -> np.ndarray:
     if not len(known):
         return np.zeros(len(column))
     return np.asarray(np.interp(np.arange(len(column)), known, column[known]))
+
+
+def means(values: np.ndarray) -> np.ndarray:
+    """Means of windows (n, L, reads) over their samples (n, reads), NaN where a reading has none."""
+    count = np.isfinite(values).sum(axis=1)
+    return np.asarray(np.nansum(values, axis=1) / np.where(count > 0, count, np.nan))
