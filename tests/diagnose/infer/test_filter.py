@@ -100,7 +100,7 @@ def test_thermometers_that_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("error")
-def test_errors_that_are_always_the_same_count_once() -> None:
+def test_errors_that_are_always_the_same_have_a_share() -> None:
     error = np.full((2, 36, 1), 50.0)
     none = np.zeros((2, 1))
     assert np.isfinite(independent(Passed(none, none[:, :, None], error, np.ones_like(error), error)))
