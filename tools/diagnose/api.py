@@ -166,7 +166,7 @@ def diagnose(
     predict: File | None = None,
     causes: int = MOST,
     quick: bool = False,
-    alpha: float = 0.01,
+    alpha: float = Request.alpha,
     seed: int = 0,
     series: File | None = None,
     reference_series: File | None = None,

@@ -39,7 +39,7 @@ def watch(
     state: File | None = None,
     every: int = WINDOW,
     once: bool = False,
-    alpha: float = 0.01,
+    alpha: float = Request.alpha,
     page: File | None = None,
     publish: str = "",
     after: int | None = None,
