@@ -63,8 +63,6 @@ from .values import (
     standard_deviation,
 )
 
-#: States that make a body of a part: a net has one of them. What switches has others.
-BODY = frozenset({"T", "w"})
 #: Time between the halves of a test.
 STOP = Quantity("stop", "s", "time between the halves of a test", low=0.0, high=6e7)
 
@@ -311,7 +309,7 @@ class _Loader:
 
     def _one_body_of_two(self) -> list[str]:
         """Nets of the file that share a port, which makes one of them, and that hold different storages."""
-        stores = {name for name, cls in self.types.items() if not BODY.isdisjoint(list_declared(cls, State))}
+        stores = {name for name, cls in self.types.items() if list_declared(cls, State)}
         held = {net: {port.partition(".")[0] for port in ports} & stores for net, ports in self.table.connect.items()}
         first: dict[str, str] = {}
         problems = []

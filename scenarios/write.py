@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..model.core.component import Component
@@ -45,7 +45,7 @@ def _lines(scenario: Scenario) -> Iterator[str]:
         sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
         uncertainties = _uncertainties(scenario, part, cls)
         yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources, more=uncertainties)
-    yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(scenario.spec.connections, 1)})
+    yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(_nets(scenario.spec.connections), 1)})
     for instrument in scenario.instruments:
         yield from _table(f"sensors.{_key(instrument.name)}", _sensor(instrument, scenario.readable()))
     yield from _table("losses", scenario.losses)
@@ -60,6 +60,15 @@ def _lines(scenario: Scenario) -> Iterator[str]:
             yield from _table(f"campaign.inputs.{_toml(path)}", vars(driven))
     for erratum in scenario.errata:
         yield from _table("[errata]", vars(erratum))
+
+
+def _nets(connections: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Groups of ports that meet; what was added at a port joins its group, as a rig file names a port once."""
+    nets: list[tuple[str, ...]] = []
+    for ports in connections:
+        at = next((k for k, net in enumerate(nets) if not {*net}.isdisjoint(ports)), len(nets))
+        nets[at : at + 1] = [tuple(dict.fromkeys((*sum(nets[at : at + 1], ()), *ports)))]
+    return nets
 
 
 def _sensor(instrument: Instrument, units: Mapping[str, Quantity]) -> dict[str, Any]:
