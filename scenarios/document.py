@@ -73,6 +73,8 @@ def _syntax_problem(name: str, text: str, message: str) -> str:
     line = int(found[1]) if found else len(lines)
     shown = lines[line - 1].strip() if 0 < line <= len(lines) else ""
     remedy = 'Write key = "62 mm": values with a unit stand in quotation marks.'
+    if what.startswith(("Cannot overwrite", "Cannot declare")):
+        remedy = "It stands in the file twice. Keep one."
     return f"{name} line {line}: TOML syntax, {what[:1].lower()}{what[1:]}: {shown}\n{remedy}"
 
 

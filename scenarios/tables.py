@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, Self, get_args
 
@@ -15,7 +16,7 @@ Kind = Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "
 
 def _is_sign(value: float) -> float:
     if value not in (1.0, -1.0):
-        raise ValueError("is no sign")
+        raise ValueError("it should be 1.0 or -1.0")
     return value
 
 
@@ -135,6 +136,21 @@ class RigTable(Strict):
         return {key: {"reads": value} if isinstance(value, str) else value for key, value in written.items()}
 
 
+#: Words of pydantic -> those of a file.
+WORDS = {
+    "Input should": "it should",
+    "List should": "it should",
+    " after validation": "",
+    "Value error, ": "",
+    "a valid dictionary": "a table",
+    "a valid string": "text in quotation marks",
+    "a valid boolean": "true or false",
+    "a valid": "a",
+    "greater than or equal to": "at least",
+    "less than or equal to": "at most",
+    "greater than": "above",
+    "less than": "below",
+}
 #: What stands in for a required key that is missing or wrong, so that the rest of the file is still checked.
 _STANDING_IN: Mapping[str, Any] = {"kind": "", "doc": "", "drive": {}, "operating_point": {}, "part": {}}
 
@@ -173,7 +189,10 @@ def problem_of(name: str, error: Mapping[str, Any], top: type[Strict]) -> str:
         return f'{where}: unknown key "{key}".{close}'
     if error["type"] == "missing":
         return f'{where}: "{key}" is missing. Expected: {expected}.'
-    return f"{where}: {key} = {error['input']!r} does not fit. Expected: {expected}."
+    should = re.sub(r" or instance of \w+", "", error["msg"])
+    for theirs, ours in WORDS.items():
+        should = should.replace(theirs, ours)
+    return f"{where}: {key} = {error['input']!r} does not fit: {should}.{f' Expected: {expected}.' if expected else ''}"
 
 
 def _find_expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Strict] | None, str]:

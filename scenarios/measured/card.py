@@ -71,7 +71,7 @@ class Protocol(Strict):
     @classmethod
     def _possible(cls, minutes: list[float]) -> list[float]:
         if not all(SHORTEST <= minute <= LONGEST for minute in minutes):
-            raise ValueError("no time of a dwell")
+            raise ValueError(f"it should be minutes, {SHORTEST:g} to {LONGEST:g} each")
         return minutes
 
 

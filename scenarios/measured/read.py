@@ -112,7 +112,7 @@ class _Reader:
             self.problems += misnamed(scenario, card, declared, self.header, path.name)
         self.context = {name: column for name, column in context.items() if column in self.header}
         if not (points or any(s.role == "read" for s in self.sensors)):
-            names = ", ".join(s.column for s in declared if s.role == "read")
+            names = ", ".join(s.column or s.name for s in declared if s.role == "read")
             self.problems.append(f"{path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
 
     def campaign(self) -> Campaign:

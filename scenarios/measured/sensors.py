@@ -186,9 +186,14 @@ class _Sensors:
             )
 
     def _ways(self) -> None:
-        """Refuse sensors that are read of what drives the model, and signs of what has none."""
+        """Refuse sensors that are read of what drives the model, signs of what has none, and kinds of another unit."""
         given = {i.reads for i in self.found.values() if i.reads in self.driven and i.role != "read"}
         for i in self.found.values():
+            if i.kind and SI[i.kind] != self.known[i.reads].unit:
+                self.problems.append(
+                    f'{self.card.name} sensors.{i.name}: kind = "{i.kind}", but {i.reads} is in'
+                    f" {self.known[i.reads].unit}. Mend one of them."
+                )
             if i.role == "read" and i.reads in self.driven - given and self.known[i.reads].unit in ("rad/s", "N.m"):
                 self.problems.append(
                     f'{self.card.name} sensors.{i.name}: {i.reads} drives the model. Give it the role "given", or have'
@@ -212,8 +217,8 @@ class _Sensors:
 
     def _declare(self, key: str, table: Mapping[str, object]) -> None:
         name = self._name(key)
-        if name is None and table.get("reads") not in self.known:
-            reads = str(table.get("reads", ""))
+        reads = str(table.get("reads", ""))
+        if reads not in self.known and (reads or name is None):
             close = suggestion(reads, self.known) or f" Sensors: {', '.join(self.found)}."
             self.problems.append(f'{self.card.name} sensors.{key}: there is no "{reads}" to read.{close}')
             return

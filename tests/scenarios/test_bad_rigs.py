@@ -95,7 +95,8 @@ FACE = 'b = "42 mm"'
         (
             'carrier = ["w", "tau"]',
             'carrier = ["w", "torque"]',
-            "rig.toml [drive]: carrier = 'torque' does not fit. Expected: what is given at the shaft ends",
+            "rig.toml [drive]: carrier = 'torque' does not fit: it should be 'w', 'tau' or 'load'. Expected: what is"
+            " given at the shaft ends",
         ),
         ('"oil.T"', '"oil.TT"', 'rig.toml [sensors] T_oil_C: there is no "oil.TT". Did you mean "oil.T"'),
         (
@@ -151,7 +152,11 @@ FACE = 'b = "42 mm"'
             "rig.toml [part.oil]: sources = 'Dias2014' is no table. Write sources = { V = \"...\" }.",
         ),
         # the campaign
-        ('stop = "5 min"', "stop = 5", "rig.toml [campaign]: stop = 5 does not fit. Expected: time between the halves"),
+        (
+            'stop = "5 min"',
+            "stop = 5",
+            "[campaign]: stop = 5 does not fit: it should be text in quotation marks. Expected: time between",
+        ),
         (
             'stop = "5 min"',
             'stop = "5 kg"',
@@ -170,7 +175,7 @@ FACE = 'b = "42 mm"'
         (
             "sign = [1.0, -1.0]",
             "sign = [1.0]",
-            "rig.toml [campaign.inputs.carrier.tau]: sign = [1.0] does not fit."
+            "rig.toml [campaign.inputs.carrier.tau]: sign = [1.0] does not fit: it should have at least 2 items, not 1."
             " Expected: two signs, for direction 1 and 2.",
         ),
         ('"measured.csv"', '"measurd.csv"', "measurd.csv: there is no such file. Check the path."),
@@ -266,7 +271,9 @@ def test_a_network_part_needs_a_type(problems: Problems) -> None:
 
 def test_a_broken_part_table_stops_the_reading_there(problems: Problems) -> None:
     old = '[part.oil]\noil = "PAOR"\nV = "1 l"\nsource = "Dias2014, chapter 4"\n'
-    expected = "rig.toml [part]: oil = 3 does not fit. Expected: a table [part.NAME] for each part."
+    expected = (
+        "rig.toml [part]: oil = 3 does not fit: it should be a table. Expected: a table [part.NAME] for each part."
+    )
     assert problems((old, "[part]\noil = 3\n")) == (expected,)
 
 

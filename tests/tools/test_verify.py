@@ -268,7 +268,7 @@ class TestCommand:
         answer = gearheat("verify", reducer(broken))
         assert answer.code == 2 and len(answer.problems()) == 2
         assert 'unknown key "fre". Did you mean "free"' in answer.err
-        assert "run = 'guess' does not fit. Expected: one of steady" in answer.err
+        assert "run = 'guess' does not fit: it should be 'steady', 'held', " in answer.err
 
     def test_all_names_that_the_rig_does_not_have_at_once(self, gearheat, reducer) -> None:
         broken = (

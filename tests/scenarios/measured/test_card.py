@@ -128,14 +128,14 @@ mu = "10 %"
     found = "\n".join(error.value.problems)
     assert len(error.value.problems) == 7
     for words in (
-        "card.toml: schema = 'gearheat.card/3' does not fit.",
-        "card.toml: day_cooling_sd = -1 does not fit. Expected: relative scatter from day to day of what surfaces and"
-        " coolers give off.",
+        "card.toml: schema = 'gearheat.card/3' does not fit: it should be 'gearheat.card/1' or 'gearheat.card/2'.",
+        "card.toml: day_cooling_sd = -1 does not fit: it should be at least 0. Expected: relative scatter from day to"
+        " day of what surfaces and coolers give off.",
         'card.toml: unknown key "columms". Did you mean "columns"?',
-        "card.toml [channels.T_oil]: repeat_sd = True does not fit.",
-        "card.toml [protocol]: stop_min = -1 does not fit.",
-        "card.toml [protocol]: dwell_min = [0, 90] does not fit.",
-        "card.toml [prior_sd]: mu = '10 %' does not fit.",
+        "card.toml [channels.T_oil]: repeat_sd = True does not fit: it should be text in quotation marks. Expected: ",
+        "card.toml [protocol]: stop_min = -1 does not fit: it should be at least 0. Expected: ",
+        "card.toml [protocol]: dwell_min = [0, 90] does not fit: it should be minutes, 0.01 to 1e+06 each. Expected: ",
+        "card.toml [prior_sd]: mu = '10 %' does not fit: it should be a number. Expected: ",
     ):
         assert words in found, words
 
