@@ -35,11 +35,12 @@ def test_forms_are_sound_and_neutral_at_size_zero(case, rig):
     assert [p for x in c.causes for p in problems(x, c.scenario.spec, c.sensors, c.ranges)] == []
 
 
+@pytest.mark.parametrize("share", [0.001, 0.5])
 @pytest.mark.parametrize("rig", RIGS)
-def test_a_rig_with_what_causes_and_calibration_add_is_a_rig(case, rig, tmp_path):
+def test_a_rig_with_what_causes_and_calibration_add_is_a_rig(case, rig, share, tmp_path):
     c, added = case(rig), {}
     for cause, form in ((x, f) for x in c.causes for f in x.forms if f.parts and not f.spread):
-        theta = {s.name: (s.low + s.high) / 2 for s in form.shapes} | {cause.size.name: cause.size.sd}
+        theta = {s.name: s.low + share * (s.high - s.low) for s in form.shapes} | {cause.size.name: cause.size.sd}
         added.setdefault(form.connections, Applied(cause.id, cause.doc, form, theta))
     films = thin_film_friction(Context(c.roles, c.ranges, c.sensors))
     also = [calibration(films, dict.fromkeys(films.paths, 0.1))] if films else []

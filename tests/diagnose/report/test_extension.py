@@ -63,6 +63,15 @@ def test_calibrated_values_come_first_and_stay_within_their_range(tmp_path: Path
     assert again.spec.part(OIL).values["nu_40"] == pytest.approx(1e-4 * float(ca.exp(0.5)))
 
 
+def test_what_causes_change_stays_possible(tmp_path: Path) -> None:
+    """A pump gives no more than it displaces."""
+    rig = load("e_axle")
+    more = Form(values=lambda theta, row: {"pump.eta_v": row.base["pump.eta_v"] * ca.exp(theta["G"])})
+    text = extended(rig, {}, [applied(more, "cooling.oil_flow", G=0.5)], "a.csv").text({})
+    assert load(written(tmp_path, text)).spec.part("pump").values["eta_v"] == 1.0
+    assert "# pump.eta_v would be 1.517; no more than this is possible." in text
+
+
 def test_a_value_that_the_file_leaves_to_its_default_is_written(tmp_path: Path) -> None:
     """A fan is a factor on the speed of the air, which no rig file states."""
     assert "k_air" not in RIG.spec.part("room").values

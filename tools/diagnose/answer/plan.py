@@ -122,20 +122,14 @@ def rank_experiments(
             break
         together.append(best)
     sizes = {name: library[name].size for name in design.seen().places}
+    causes = [
+        PlannedCause(id=n, size=s.name, usual=s.sd, unit=s.unit, visible=visible.visible(n), exposes=library[n].exposes)
+        for n, s in sizes.items()
+    ]
     return Plan(
         **common,
         verdict=decide(now, single, together),
-        causes=tuple(
-            PlannedCause(
-                id=name,
-                size=size.name,
-                usual=size.sd,
-                unit=size.unit,
-                visible=visible.visible(name),
-                exposes=library[name].exposes,
-            )
-            for name, size in sizes.items()
-        ),
+        causes=tuple(causes),
         pairs=tuple(PlannedPair(causes=p, distance=apart.get(p, 0.0), one_answer=reasons.get(p)) for p in pairs),
         now=now,
         catalogue=tuple(

@@ -127,14 +127,7 @@ def extended(
         oils: how many oils the tests ran with
         also: what calibration adds to the rig
     """
-    known = scenario.settable()
-    values, notes = {}, []
-    for path, value in calibrated.items():
-        if path in known:
-            values[path] = float(np.clip(value, known[path].low, known[path].high))
-            if values[path] != float(value):
-                notes.append(f"{path} would be {phrases.number(float(value), 4)}; no more than this is possible.")
-    rig = scenario.with_values(values, f"calibrated: diagnosis of {data}")
+    rig, notes = _with_values(scenario, calibrated, f"calibrated: diagnosis of {data}")
     for one in (*also, *applied):
         rig, left = _added(rig, one, data, oils)
         notes += left
@@ -143,6 +136,17 @@ def extended(
     head = [f"Written by `gearheat diagnose` from {data}: {causes}.", *notes]
     clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), entries={})
     return Extended(clean, tuple(head))
+
+
+def _with_values(scenario: Scenario, values: Mapping[str, float], source: str) -> tuple[Scenario, list[str]]:
+    """The scenario with values that it has, none beyond what is possible, and what was cut."""
+    known = scenario.settable()
+    wanted = {path: float(value) for path, value in values.items() if path in known}
+    cut = {path: float(np.clip(value, known[path].low, known[path].high)) for path, value in wanted.items()}
+    notes = [
+        f"{p} would be {phrases.number(v, 4)}; no more than this is possible." for p, v in wanted.items() if v != cut[p]
+    ]
+    return scenario.with_values(cut, source), notes
 
 
 def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scenario, list[str]]:
@@ -166,7 +170,8 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     if form.shown is not None or form.truth is not None or form.pace is not None:
         notes.append(f"{outside} Its part in the machine is below.")
     spec = scenario.spec.with_parts(parts, nets, EXTRA_PARTS)
-    return replace(scenario, spec=spec, losses=losses).with_values(values, source), notes
+    changed_rig, cut = _with_values(replace(scenario, spec=spec, losses=losses), values, source)
+    return changed_rig, notes + cut
 
 
 def _changed(form: Form, theta: Theta, base: Mapping[str, float]) -> dict[str, float] | None:
