@@ -55,7 +55,6 @@ from .values import (
     PartValues,
     deviation,
     in_range,
-    not_too_wide,
     part_values,
     quantities,
     readable,
@@ -368,10 +367,7 @@ class _Loader:
 
     def _change(self, where: str, raw: Any, quantity: Quantity) -> float:
         """What a value changes by at one standard deviation."""
-        name = f"{where}{quantity.name}"
-        part, _, key = quantity.name.rpartition(".")
-        value = self.parts[part].values.get(key) if part in self.parts else None
-        return not_too_wide(name, raw, deviation(name, raw, quantity.unit), value)
+        return deviation(f"{where}{quantity.name}", raw, quantity.unit)
 
     def _protocol(self) -> Protocol | None:
         table = self.table.campaign

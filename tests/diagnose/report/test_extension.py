@@ -53,6 +53,11 @@ def test_a_cause_adds_its_part_under_a_free_name(tmp_path: Path, conductor: Form
     assert "cooling by the air (cooling.air)" in twice.doc
 
 
+def test_what_is_nearly_nothing_may_be_very_uncertain(tmp_path: Path, conductor: Form) -> None:
+    text = extended(RIG, {}, [applied(conductor, G=0.01)], "mine.csv").text({"posterior_1": {"found_air.G": 5.0}})
+    assert load(written(tmp_path, text)).joint_uncertainties["posterior_1"]["found_air.G"] == 5.0
+
+
 def test_calibrated_values_come_first_and_stay_within_their_range(tmp_path: Path) -> None:
     path, quantity = next((p, q) for p, q in RIG.settable().items() if q.high == 1.0 and not q.high_open)
     factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * ca.exp(theta["G"])})
