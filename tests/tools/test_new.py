@@ -255,9 +255,10 @@ def test_a_grease_is_no_oil(gearheat, tmp_path):
 
 def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     path = tmp_path / "a.toml"
-    plate = ("--stages", "spur,warm", "--ratio", "90", "--power", "2 kW", "--speed", "1450 rpm", "-o", path)
-    answer = gearheat("new", "a", *plate)
-    assert answer.code == 2
+    plate = ("--stages", "spur,warm", "--ratio", "90", "--power", "2", "--speed", "1450", "--housing", "3x2 m")
+    answer = gearheat("new", "a b", *plate, "--oil", "water", "--base", "moon", "--oil-volume", "2", "-o", path)
+    assert answer.code == 2 and len(answer.problems()) == 9
+    assert '"3x2 m" has not three sides. Write "800x370x430 mm", or an area, "1.6 m2".' in answer.err
     assert 'no stage "warm". Stages: spur, helical, bevel, worm, planetary.' in answer.err
     assert "Give --stages helical,helical,helical." in answer.err
     assert not path.exists()

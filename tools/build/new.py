@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.core.flat import FlatModel
-from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
+from ...model.errors import GearheatError, Problems, ScenarioError, SolveError, suggestion
 from ...model.run.steady import steady
 from ...model.units import to_si
 from ...scenarios.entries import catalogue
@@ -22,7 +22,7 @@ from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions
 from .plausible import WARM, no_load, notes, usual
 from .rig_file import around_of, text
-from .sizing import unit, wanted_of
+from .sizing import check, unit, wanted_of
 
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
@@ -96,13 +96,23 @@ def new(
     """
     words = stages.split(",") if isinstance(stages, str) else stages
     kinds = [kind.strip() for kind in words if kind.strip()]
-    wanted = wanted_of(centre_distance, housing, oil_volume)
-    plate = to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed")
-    made = unit(kinds, ratio, *plate, bearings, wanted)
-    entry = _oil(oil)
-    around = around_of(base, fan, cooler, motor_heat, air_speed, housing is not None)
+    problems, watts, w = Problems(), 1.0, 100.0  # what stands in for what cannot be read
+    with problems:
+        watts = to_si(power, "W", name="--power")
+    with problems:
+        w = to_si(speed, "rad/s", name="--speed")
+    with problems:
+        check(kinds, ratio, watts, w, bearings)
+    with problems:
+        wanted = wanted_of(centre_distance, housing, oil_volume)
+    with problems:
+        entry = _oil(oil)
+    with problems:
+        around = around_of(base, fan, cooler, motor_heat, air_speed, housing is not None)
     if not re.fullmatch(r"[\w.-]+", name):
-        raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+        problems.append(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+    problems.check()
+    made = unit(kinds, ratio, watts, w, bearings, wanted)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml" if out is None else Path(out)
         fitting(path, "a rig file")

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...model.errors import ScenarioError
+from ...model.errors import Problems, ScenarioError
 from ...model.units import si_of, to_si
 from ...scenarios.entries import catalogue
 from .bearings import CHOICES, UNLOADED, choose, largest_bore
@@ -136,7 +136,7 @@ def unit(
     Raises:
         ScenarioError: unknown kinds, or more than so many stages of so much can do
     """
-    _check(kinds, ratio, power, speed, bearings)
+    check(kinds, ratio, power, speed, bearings)
     if wanted.centre and kinds[-1] not in CENTRED:
         raise ScenarioError(f"a {kinds[-1]} stage has no --centre-distance to choose. Leave it out.")
     T, n, x = power / speed, speed / (2 * math.pi), SIDE
@@ -200,7 +200,19 @@ def _sides(box: Sequence[float]) -> str:
     return f"{'x'.join(f'{1000 * side:.0f}' for side in box)} mm"
 
 
-def _check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> None:
+def check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> None:
+    """Refuse name plates that the rules have no unit for, all that is wrong at once.
+
+    Args:
+        kinds: of the stages
+        ratio: speed of the input over that of the output
+        power: at the input [W]
+        speed: of the input [rad/s]
+        bearings: "ball", "roller" or "auto"
+
+    Raises:
+        ScenarioError: unknown kinds, stages where they cannot stand, or more than so many stages of so much can do
+    """
     problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
@@ -384,12 +396,23 @@ def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wa
     Raises:
         ScenarioError: what is no size
     """
-    given = ((centre, "m", "--centre-distance"), (volume, "m3", "--oil-volume"))
-    size, oil = (None if text is None else _positive(text, unit, name) for text, unit, name in given)
-    if housing is None or not (sides := re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing)):
-        return Wanted(size, None, None if housing is None else _positive(housing, "m2", "--housing"), oil)
-    box = tuple(_positive(f"{side} {sides[4]}", "m", "--housing") for side in sides.groups()[:3])
-    return Wanted(size, box, None, oil)
+    problems, size, oil, box, area = Problems(), None, None, None, None
+    with problems:
+        size = None if centre is None else _positive(centre, "m", "--centre-distance")
+    with problems:
+        oil = None if volume is None else _positive(volume, "m3", "--oil-volume")
+    sides = re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing or "")
+    with problems:
+        if sides:
+            box = tuple(_positive(f"{side} {sides[4]}", "m", "--housing") for side in sides.groups()[:3])
+        elif housing is not None and re.search(r"\d\s*[x*×]", housing):
+            problems.append(
+                f'--housing = "{housing}" has not three sides. Write "800x370x430 mm", or an area, "1.6 m2".'
+            )
+        elif housing is not None:
+            area = _positive(housing, "m2", "--housing")
+    problems.check()
+    return Wanted(size, box, area, oil)
 
 
 def _positive(written: str, unit: str, name: str) -> float:

@@ -142,7 +142,8 @@ def _parse_bounds(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list
         name, _, ends = (part.strip() for part in text.partition("="))
         low, dots, high = ends.partition("..")
         if name not in found or not dots:
-            problems.append(f'--bounds "{text}": write a free parameter and its range, like cooling.A=0.4 m2..1.2 m2.')
+            what = f"a free parameter ({', '.join(found)}) and its range"
+            problems.append(f'--bounds "{text}": write {what}, like cooling.A=0.4 m2..1.2 m2.')
             continue
         with problems:
             first, second = (to_si(end, found[name].unit, name=f"--bounds {name}") for end in (low, high))
