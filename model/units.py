@@ -100,8 +100,9 @@ def _fitting(written: str, target: str, difference: bool = False) -> Any:
         turns = target not in ANGULAR or ureg.get_root_units(unit)[1] == ureg.get_root_units(_pint_unit(target))[1]
         energy = target == "N.m" and any(ureg.Unit(name).is_compatible_with("J") for name in unit._units)
     except Exception:  # the parser of units fails on odd text in many ways, and all mean the same to the user
+        of = f"{target} (difference)" if difference else target
         raise ScenarioError(
-            f'unit "{written}" does not fit {show_unit(target)}. Write for example "{example(target)}".'
+            f'unit "{written}" does not fit {show_unit(of)}. Write for example "{example(of)}".'
         ) from None
     if energy or (not turns and target != "rad/s"):
         kind = "an energy" if energy else "of an angle or a number"

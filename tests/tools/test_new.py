@@ -279,7 +279,8 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--stages", "helical,bevel"), "a bevel stage comes first"),
         (("--stages", "worm,helical"), "a worm stage comes last here, behind helical ones. Give --stages helical,worm"),
         (("--stages", "bevel,worm"), "shafts turn by a right angle once"),
-        (("--air-speed", "-1 m/s"), "expected 0 m/s or more"),
+        (("--air-speed", "-1 m/s"), "expected 0 m/s to 60 m/s"),
+        (("--air-speed", "90 m/s"), "expected 0 m/s to 60 m/s"),
         (("--stages", "worm"), "expected 7 to 60"),
         (
             ("--stages", "planetary,helical"),

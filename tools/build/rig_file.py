@@ -18,6 +18,8 @@ from .bearings import LIGHT
 from .sizing import APART, GAP, OVERHANG, SIDE, Unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
 
+#: Fastest air along a housing [m/s].
+STORM = 60.0
 #: Density of steel [kg/m3].
 STEEL = 7850.0
 #: Density of cast iron [kg/m3].
@@ -92,8 +94,8 @@ def around_of(base: str, fan: bool, cooler: bool, heat: str | None, air: str | N
         raise ScenarioError(f"--motor-heat = {heat}: a motor gives heat, expected 0 W or more.")
     draught = DRAUGHT if motor is None else BLOWN
     speed = draught if air is None else to_si(air, "m/s", name="--air-speed")
-    if not speed >= 0:
-        raise ScenarioError(f"--air-speed = {air}: expected 0 m/s or more.")
+    if not 0 <= speed <= STORM:
+        raise ScenarioError(f"--air-speed = {air}: expected 0 m/s to {STORM:g} m/s.")
     return Around(base, fan, cooler, motor, speed, boxed)
 
 

@@ -142,8 +142,8 @@ def _parse_bounds(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list
         name, _, ends = (part.strip() for part in text.partition("="))
         low, dots, high = ends.partition("..")
         if name not in found or not dots:
-            what = f"a free parameter ({', '.join(found)}) and its range"
-            problems.append(f'--bounds "{text}": write {what}, like cooling.A=0.4 m2..1.2 m2.')
+            ranges = " or ".join(f"{known}=LOW..HIGH" for known in found)
+            problems.append(f'--bounds "{text}": is no range of a free parameter. Write {ranges}, both with units.')
             continue
         with problems:
             first, second = (to_si(end, found[name].unit, name=f"--bounds {name}") for end in (low, high))
