@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from types import TracebackType
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: What acts on a screen, or no XML can hold, in a text: controls, marks of direction, odd ends of lines, halves.
 _HIDDEN = re.compile(
@@ -60,8 +63,18 @@ class Problems(list[str]):
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> bool:
-        self += error.problems if isinstance(error, GearheatError) else ()
+        self += [p for p in error.problems if p not in self] if isinstance(error, GearheatError) else ()
         return isinstance(error, GearheatError)
+
+    def of(self, step: Callable[[], T]) -> T | None:
+        """What a step gives, None where it is refused.
+
+        Args:
+            step: that may be refused
+        """
+        with self:
+            return step()
+        return None
 
     def check(self, kind: type[GearheatError] = ScenarioError) -> None:
         """Raise an error of a class that carries all problems, if there are any."""

@@ -11,7 +11,7 @@ from ..core.component import SOUND, Component, Faults
 from ..core.declare import Parameter, Port, list_declared
 from ..errors import ScenarioError
 from ..files import tables
-from ..parts.ports import Flange, HeatPort, Lubricant, ShaftReading
+from ..parts.ports import Flange, HeatPort, Lubricant, OilLevel, ShaftReading
 from .spec import Spec
 
 #: Causes by which parts of a role may fail, where their class says no more.
@@ -306,8 +306,8 @@ def _find_roles(nets: _Nets) -> Roles:
     foundation = tuple(c for c in conductors if ends[c] & air and c not in exchangers)
     kept_by = tuple(c for c in conductors if ends[c] & kept and c not in (*foundation, *exchangers))
     inner = [c for c in conductors if c not in (*foundation, *kept_by, *exchangers)]
-    oil_side = tuple(c for c in inner if oil in ends[c])
-    between = tuple(c for c in inner if oil not in ends[c])
+    oil_side = tuple(c for c in inner if oil in ends[c] or nets.ports(c, Lubricant) or nets.ports(c, OilLevel))
+    between = tuple(c for c in inner if c not in oil_side)
     contacts = tuple(c for c in between if "cooling.contact" in faults_of(nets.classes[c]))
     surfaces = nets.of("surface")
     outer = (nets.heat_nets([*surfaces, *foundation]) - air) - {oil}

@@ -185,6 +185,9 @@ def test_a_part_of_ones_own_joins_a_rig(rig: gh.Rig) -> None:
     assert gh.steady(cooled, {"cooler.G": "0 W/K"})["oil.T"] == pytest.approx(gh.steady(rig)["oil.T"], abs=1e-6)
     with pytest.raises(gh.GearheatError, match='a part "oil" already'):
         rig.join(OilCooler("oil", G=1.0), nets=[])
+    linear = PARTS["LipSeal"]("seal", law="linear", count=1, inner_share=0.5, d_sh=0.05, c_sh=73.0, c_d=1.0)
+    with pytest.raises(gh.GearheatError, match='seal: LipSeal does not use "c_sh" with its other values'):
+        rig.join(linear, nets=[])
 
 
 def test_a_rig_of_parts_without_a_file() -> None:

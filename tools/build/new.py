@@ -20,9 +20,10 @@ from ..show.console import writable, write
 from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions
+from .data_sheet import wanted_of
 from .plausible import WARM, no_load, notes, usual
 from .rig_file import around_of, text
-from .sizing import check, unit, wanted_of
+from .sizing import check, unit
 
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
@@ -96,23 +97,19 @@ def new(
     """
     words = stages.split(",") if isinstance(stages, str) else stages
     kinds = [kind.strip() for kind in words if kind.strip()]
-    problems, watts, w = Problems(), 1.0, 100.0  # what stands in for what cannot be read
-    with problems:
-        watts = to_si(power, "W", name="--power")
-    with problems:
-        w = to_si(speed, "rad/s", name="--speed")
-    with problems:
-        check(kinds, ratio, watts, w, bearings)
-    with problems:
-        wanted = wanted_of(centre_distance, housing, oil_volume)
-    with problems:
-        entry = _oil(oil)
-    with problems:
-        around = around_of(base, fan, cooler, motor_heat, air_speed, housing is not None)
+    problems = Problems()
+    watts = problems.of(lambda: to_si(power, "W", name="--power"))
+    w = problems.of(lambda: to_si(speed, "rad/s", name="--speed"))
+    plate = 1.0 if watts is None else watts, 100.0 if w is None else w  # what is wrong else is told, too
+    problems.of(lambda: check(kinds, ratio, *plate, bearings))
+    wanted = problems.of(lambda: wanted_of(centre_distance, housing, oil_volume))
+    entry = problems.of(lambda: _oil(oil))
+    around = problems.of(lambda: around_of(base, fan, cooler, motor_heat, air_speed, housing is not None))
     if not re.fullmatch(r"[\w.-]+", name):
         problems.append(f'"{name}" is no name. Take letters, digits, _, - and dots.')
-    problems.check()
-    made = unit(kinds, ratio, watts, w, bearings, wanted)
+    if problems or wanted is None or entry is None or around is None:
+        raise ScenarioError(problems)
+    made = unit(kinds, ratio, *plate, bearings, wanted)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml" if out is None else Path(out)
         fitting(path, "a rig file")

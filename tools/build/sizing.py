@@ -8,15 +8,15 @@ stands, what dips into it and what it wets.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...model.errors import Problems, ScenarioError
-from ...model.units import si_of, to_si
+from ...model.errors import ScenarioError
+from ...model.units import si_of
 from ...scenarios.entries import catalogue
 from .bearings import CHOICES, UNLOADED, choose, largest_bore
+from .data_sheet import Wanted
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Shear stress of shafts [Pa].
@@ -68,23 +68,6 @@ class Shaft:
     bearings: tuple[str, str]
     lives: tuple[float, float]
     kind: str
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What a data sheet says of a unit, None where it follows from the rules.
-
-    Args:
-        centre: centre distance of the last stage [m]
-        box: length, width and height of the housing [m]
-        area: of the housing [m2]
-        volume: of the oil [m3]
-    """
-
-    centre: float | None = None
-    box: tuple[float, ...] | None = None
-    area: float | None = None
-    volume: float | None = None
 
 
 @dataclass(frozen=True)
@@ -383,40 +366,3 @@ def splash(made: Unit) -> dict[str, float]:
         "shaft": 0 if isinstance(made.stages[0], WormStage) else 1,
         "share": ALONG,
     }
-
-
-def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wanted:
-    """What a data sheet says, in SI.
-
-    Args:
-        centre: centre distance of the last stage, as it is written, None where it says nothing
-        housing: length x width x height of the housing, or its area
-        volume: of the oil
-
-    Raises:
-        ScenarioError: what is no size
-    """
-    problems, size, oil, box, area = Problems(), None, None, None, None
-    with problems:
-        size = None if centre is None else _positive(centre, "m", "--centre-distance")
-    with problems:
-        oil = None if volume is None else _positive(volume, "m3", "--oil-volume")
-    sides = re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing or "")
-    with problems:
-        if sides:
-            box = tuple(_positive(f"{side} {sides[4]}", "m", "--housing") for side in sides.groups()[:3])
-        elif housing is not None and re.search(r"\d\s*[x*×]", housing):
-            problems.append(
-                f'--housing = "{housing}" has not three sides. Write "800x370x430 mm", or an area, "1.6 m2".'
-            )
-        elif housing is not None:
-            area = _positive(housing, "m2", "--housing")
-    problems.check()
-    return Wanted(size, box, area, oil)
-
-
-def _positive(written: str, unit: str, name: str) -> float:
-    """A size in SI."""
-    if (value := to_si(written, unit, name=name)) <= 0:
-        raise ScenarioError(f'{name} = "{written}" is no size. It must be above 0.')
-    return value

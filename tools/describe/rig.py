@@ -11,7 +11,7 @@ from typing import Any
 from ...model.core.component import Component
 from ...model.core.declare import Choice, list_declared
 from ...model.core.flat import FlatModel
-from ...model.errors import ScenarioError
+from ...model.errors import Problems
 from ...model.machines.spec import PartSpec, Spec
 from ...scenarios.given import Settings, assignments_of
 from ...scenarios.load import load as read_rig
@@ -88,12 +88,21 @@ class Rig(Quantities):
             nets: ports that meet, such as ("fan.shaft", "input_seal.shaft")
 
         Raises:
-            ScenarioError: a name that is there already
+            ScenarioError: names that are there already, and values that a part does not use
             StructureError: ports that do not fit
         """
         spec = self.scenario.spec
-        if taken := [part.name for part in parts if part.name in self.parts]:
-            raise ScenarioError([f'{self.name}: there is a part "{n}" already. Give it another name.' for n in taken])
+        problems = Problems(
+            f'{self.name}: there is a part "{part.name}" already. Give it another name.'
+            for part in parts
+            if part.name in self.parts
+        )
+        problems += [
+            f'{part.name}: {type(part).__name__} does not use "{key}" with its other values. Leave it out.'
+            for part in parts
+            for key in sorted(part.told - part.values.keys())
+        ]
+        problems.check()
         added = [PartSpec(part.name, type(part).__name__, _collect_values(part)) for part in parts]
         types = {type(part).__name__: type(part) for part in parts}
         sources = {f"{part.name}.{key}": ADDED for part in added for key in part.values}

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
 
-from ...model.errors import DataError, GearheatError, suggestion
+from ...model.errors import DataError, Problems, suggestion
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
 from ...scenarios.measured.checks import invisible, outlying, same_as_reference, too_small
@@ -19,8 +18,6 @@ from ...scenarios.measured.table import Campaign
 from ...scenarios.scenario import Scenario
 from ..show.console import writable
 from ..show.endings import fitting
-
-T = TypeVar("T")
 
 #: What is written by options of a diagnosis.
 WRITTEN = {"--json": "JSON", "--report": "a page", "--extended": "a rig file", "--predictions": "a table"}
@@ -208,13 +205,13 @@ class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
     def __init__(self, request: Request | PlanRequest, written: Mapping[str, Path], problems: Iterable[str]) -> None:
-        self.problems = [*problems, *request.problems(), *_shared(request.files(), written)]
+        self.problems = Problems([*problems, *request.problems(), *_shared(request.files(), written)])
         card = request.card
-        self.card = self._try(lambda: read_card(card)) if card is None or card.is_file() else None
-        self.scenario = self._try(lambda: scenario_of(request.rig))
-        self._try(lambda: writable(*written.values()))
+        self.card = self.problems.of(lambda: read_card(card)) if card is None or card.is_file() else None
+        self.scenario = self.problems.of(lambda: scenario_of(request.rig))
+        self.problems.of(lambda: writable(*written.values()))
         for option in sorted(WRITTEN.keys() & written):
-            self._try(partial(fitting, written[option], WRITTEN[option], option))
+            self.problems.of(partial(fitting, written[option], WRITTEN[option], option))
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""
@@ -222,27 +219,20 @@ class _Reader:
         if path is None or scenario is None or not path.is_file():
             return None
         card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
-        return self._try(lambda: read_campaign(path, scenario, card, points=points))
+        return self.problems.of(lambda: read_campaign(path, scenario, card, points=points))
 
     def logged(self, campaign: Campaign | None, path: Path | None) -> Campaign | None:
         """A table with the logged courses of its tests, where there are any."""
         scenario, card = self.scenario, self.card or Card()
         if path is None or scenario is None or not path.is_file():
             return campaign
-        samples = self._try(lambda: read_samples(path, scenario, card))
+        samples = self.problems.of(lambda: read_samples(path, scenario, card))
         if campaign is None or samples is None:
             return campaign
-        return replace(campaign, series=self._try(lambda: series_of(samples, campaign)))
+        return replace(campaign, series=self.problems.of(lambda: series_of(samples, campaign)))
 
     def checked(self) -> tuple[Scenario, Card]:
         """Rig and card, or all problems."""
         if self.problems or self.scenario is None or self.card is None:
             raise DataError(self.problems)
         return self.scenario, self.card
-
-    def _try(self, step: Callable[[], T]) -> T | None:
-        try:
-            return step()
-        except GearheatError as error:
-            self.problems += [p for p in error.problems if p not in self.problems]
-            return None

@@ -6,6 +6,8 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from gearheat.model.machines.roles import Roles
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
@@ -72,6 +74,16 @@ def said(form, theta, row, read):
     found |= form.truth(theta, row) if form.truth else {}
     found |= form.shown(theta, row, read) if form.shown else {}
     return found | ({"pace": form.pace(theta, row)} if form.pace else {})
+
+
+def test_oil_beside_the_main_bath_is_no_joint(case):
+    c = case("helical_two_stage")
+    splash = PartSpec("splash", "SplashConductor", {"A": 0.1, "r": 0.05, "c_p": 2e3, "alpha_T": -7e-4, "share": 0.5})
+    nets = [("gears.heat", "splash.a"), ("wall.heat", "splash.b"), ("input_seal.shaft", "splash.shaft")]
+    roles = Roles.of(c.scenario.spec.with_parts([splash], [*nets, ("oil.lubricant", "splash.lubricant")]))
+    assert "splash" in roles.oil_side and "splash" not in (*roles.contacts, *roles.walls)
+    forms = {x.id: [f.name for f in x.forms] for x in library(roles, c.ranges, c.sensors)}
+    assert not any("splash" in name for name in forms["cooling.contact"])
 
 
 @pytest.mark.parametrize("rig", RIGS)

@@ -220,8 +220,10 @@ class Problem:
         for o in self.campaigns:
             own = acting if o is self.data else ()
             found = o.at(whole, [(a.formula, a.t) for a in own])
-            if not np.isfinite(found.shown).all():
-                raise SolveError("the model cannot be run with what its causes make of it.")
+            if (bad := o.row[~np.isfinite(found.shown)]).size:
+                raise SolveError(
+                    f"{o.campaign.name}: the rig cannot be run at row {bad[0] + 1}. Check row and rig file."
+                )
             part = slice(begin, begin + o.m)
             blocks[part, : self.nz] = found.by[:, : self.nz]
             if own:
