@@ -55,6 +55,7 @@ from .values import (
     PartValues,
     deviation,
     in_range,
+    not_too_wide,
     part_values,
     quantities,
     readable,
@@ -366,8 +367,12 @@ class _Loader:
         return found
 
     def _change(self, where: str, raw: Any, quantity: Quantity) -> float:
-        """What a value changes by at one standard deviation."""
-        return deviation(f"{where}{quantity.name}", raw, quantity.unit)
+        """What a value changes by at one standard deviation; what data gave may be as uncertain as they leave it."""
+        name = f"{where}{quantity.name}"
+        part, _, key = quantity.name.rpartition(".")
+        of_data = self.value_sources.get(quantity.name, "").startswith(("inferred", "calibrated"))
+        value = None if of_data or part not in self.parts else self.parts[part].values.get(key)
+        return not_too_wide(name, raw, deviation(name, raw, quantity.unit), value)
 
     def _protocol(self) -> Protocol | None:
         table = self.table.campaign

@@ -34,6 +34,7 @@ def test_values_are_uncertain_together(tmp_path: Path) -> None:
         ('"cooling.B" = "1 m2"', 'there is no value "cooling.B"'),
         ('"cooling.A" = "1 m"', "cooling.A"),
         ('"cooling.A" = 1.0', "has no unit"),
+        ('"gear_set.b" = "42 m"', "is 1e+03 times the value. Check its unit."),
     ],
 )
 def test_what_is_wrong_with_them_is_told(problems: Callable[..., tuple[str, ...]], written: str, told: str) -> None:

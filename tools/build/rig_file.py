@@ -13,13 +13,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from ...model.errors import ScenarioError, suggestion
 from ...model.parts.joints import PRESSED
 from ...model.units import to_si
+from ...scenarios.ranges import RANGES
 from . import sizing
 from .bearings import LIGHT
 from .sizing import APART, GAP, OVERHANG, SIDE, Unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Fastest air along a housing [m/s].
-STORM = 60.0
+STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")
 #: Density of steel [kg/m3].
 STEEL = 7850.0
 #: Density of cast iron [kg/m3].
