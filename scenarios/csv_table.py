@@ -26,7 +26,12 @@ ACCOUNTS = ("row", "status", "iterations", "energy_residual [1]", "outside [1]")
 #: Most problems that one message lists; the rest are counted.
 SHOWN = 30
 
-#: A number with a decimal comma, in a table whose columns semicolons separate.
+#: How tables are written: UTF-8, or as Windows does in the west of Europe.
+ENCODINGS = ("utf-8-sig", "cp1252")
+#: What may separate columns.
+SEPARATORS = ",;\t"
+
+#: A number with a decimal comma, in a table whose columns no commas separate.
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
 #: A number whose point or comma may separate thousands, and one where it separates decimals.
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
@@ -87,22 +92,20 @@ def raise_all(problems: Sequence[str], name: str) -> None:
 def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows (line number, cells) of a CSV file; blank lines are left out.
 
-    Where semicolons separate the columns, decimals may have a comma; the cells given back have a point.
+    Where semicolons or tabs separate the columns, decimals may have a comma; the cells given back have a point.
 
     Args:
         path: the file
         comments: whether lines that begin with # are left out as well
 
     Raises:
-        DataError: no such file, not text, empty, no row under the header, another separator, or rows of other lengths
+        DataError: no such file, not text, empty, no row under the header, or rows of other lengths
     """
     name = path.name
     lines = [(line, cells) for line, cells in _lines(path) if not (comments and cells[0].startswith("#"))]
     if not lines:
         raise DataError(f"{name}: the file is empty. It needs a line of column names and at least one row.")
     (_, header), *rows = lines
-    if len(header) == 1 and "\t" in header[0]:
-        raise DataError(f"{name} line 1: the columns are separated by tabs. Write commas or semicolons.")
     problems = header_problems(name, header)
     problems += [
         f"{name} line {line}: {len(cells)} cells under {len(header)} column names."
@@ -137,18 +140,18 @@ def header_problems(name: str, header: Sequence[str]) -> list[str]:
 
 
 def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
-    text = read_text(path, "CSV", DataError)
+    text = read_text(path, "CSV", DataError, ENCODINGS)
     written = visible(text.replace("\x00", "\ufffd")).splitlines()
     head = next((line for line in written if line.strip() and not line.startswith("#")), "")
-    semicolons = head.count(";") > head.count(",")
-    reader = csv.reader([head] if head_only else written, delimiter=";" if semicolons else ",")
+    sign = max(SEPARATORS, key=head.count)
+    reader = csv.reader([head] if head_only else written, delimiter=sign)
     try:
         rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
-    if semicolons and (problem := _two_readings(path.name, rows)):
+    if sign != "," and (problem := _two_readings(path.name, rows)):
         raise DataError(problem)
-    plain = _cell if semicolons else str.strip
+    plain = str.strip if sign == "," else _cell
     cells = [(line, list(map(plain, row))) for line, row in rows]
     return [(line, row) for line, row in cells if any(row)]
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,26 +18,33 @@ SOURCE_KINDS = ("assumed", "inferred", "calibrated")
 #: Keys of a table of values that are not values.
 ABOUT = ("doc", "source", "sources")
 
+#: What no text has.
+_BINARY = re.compile(r"[\x00-\x08\x0e-\x1a]")
 
-def read_text(path: Path, kind: str, refused: type[GearheatError]) -> str:
+
+def read_text(path: Path, kind: str, refused: type[GearheatError], encodings: Sequence[str] = ("utf-8-sig",)) -> str:
     """The text of a file, without the mark some programs put before UTF-8.
 
     Args:
         path: the file
         kind: what it should be, for messages: "TOML", "CSV"
         refused: class of the error
+        encodings: that it may have, the surest first
 
     Raises:
-        GearheatError: of that class: there is no such file, it is not UTF-8 text, or it cannot be read
+        GearheatError: of that class: there is no such file, it is no text, or it cannot be read
     """
     try:
-        return reading(path).read_text(encoding="utf-8-sig")
+        for encoding in encodings:
+            with suppress(UnicodeDecodeError):
+                text = reading(path).read_text(encoding=encoding)
+                if encoding == encodings[0] or not _BINARY.search(text):
+                    return text
     except FileNotFoundError:
         raise refused(f"{path}: there is no such file. Check the path.") from None
-    except UnicodeDecodeError:
-        raise refused(f"{path.name}: is not UTF-8 text. Save it as a {kind} file.") from None
     except OSError as error:
         raise refused(f"{path}: cannot be read ({error.strerror}). Give a {kind} file.") from None
+    raise refused(f"{path.name}: is not UTF-8 text. Save it as a {kind} file.")
 
 
 def read_toml(path: Path) -> dict[str, Any]:

@@ -74,12 +74,13 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
         (mark, -place, name, column)
         for place, (name, sensor) in enumerate(wanted.items())
         for column in header
-        if name not in columns and column not in known.values()
+        if name not in known and column not in known.values()
         if (mark := _mark(column, sensor, scenario, wanted)) > 0
     ]
     for _, _, name, column in sorted(marks, key=lambda mark: mark[:2], reverse=True):
         if name not in known and column not in known.values():
             known[name] = column
+    known = {name: column for name, column in known.items() if columns.get(name) != ""}
     card = Card(columns=known, units=_units(known, wanted) | dict(said.units), name=path.name)
     return _turned(card, scenario, cells, said.magnitudes)
 

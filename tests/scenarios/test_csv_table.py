@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.scenarios.csv_table import Column, Table, parse, raise_all
+from gearheat.scenarios.csv_table import Column, Table, parse, raise_all, read_cells
 
 COLUMNS = (
     Column("point", "number of the reading", "count", at_least=0),
@@ -45,10 +45,7 @@ def test_no_file_and_a_folder(tmp_path: Path) -> None:
         (b"\n\n", "data.csv: the file is empty. It needs a line of column names and at least one row."),
         (HEADER.encode(), "data.csv: there is no row under the column names. Add at least one."),
         (b"\xff\xfe\x00\x81", "data.csv: is not UTF-8 text. Save it as a CSV file."),
-        (
-            f"{HEADER}\n{ROWS[0]}".replace(",", "\t").encode(),
-            "data.csv line 1: the columns are separated by tabs. Write commas or semicolons.",
-        ),
+        (b"PK\x03\x04 \xe9", "data.csv: is not UTF-8 text. Save it as a CSV file."),
         (
             f"{HEADER}\n1,1,240,45,3\n{ROWS[1]}\n".encode(),
             "data.csv line 2: 5 cells under 4 column names. Write one cell per column, decimals with a point.",
@@ -91,9 +88,15 @@ def test_a_page_of_problems_is_enough(tmp_path: Path) -> None:
     assert found[-1] == "data.csv: 70 more problems. Mend the first ones and read it again."
 
 
-def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
-    path = table(tmp_path, "1;1;240;45,25", header=HEADER.replace(",", ";"))
+@pytest.mark.parametrize("sign", [";", "\t"])
+def test_semicolons_or_tabs_with_decimal_commas(tmp_path: Path, sign: str) -> None:
+    path = table(tmp_path, sign.join(("1", "1", "240", "45,25")), header=HEADER.replace(",", sign))
     assert read(path).columns["T_oil_C"] == (45.25,)
+
+
+def test_a_table_in_the_encoding_of_windows(tmp_path: Path) -> None:
+    (path := tmp_path / "data.csv").write_bytes("Ölsumpf [°C];n\n45,25;1\n".encode("cp1252"))
+    assert read_cells(path) == (["Ölsumpf [°C]", "n"], [(2, ["45.25", "1"])])
 
 
 @pytest.mark.parametrize(

@@ -40,11 +40,15 @@ def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wa
     problems, area, box = Problems(), None, None
     size = None if centre is None else problems.of(lambda: _positive(centre, "m", "--centre-distance"))
     oil = None if volume is None else problems.of(lambda: _positive(volume, "m3", "--oil-volume"))
-    if sides := re.fullmatch(r"(.+?)\s*[x*×]\s*(.+?)\s*[x*×]\s*([\d.,]+)\s*(.*)", housing or ""):
-        lengths = [f"{side} {sides[4]}" for side in sides.groups()[:3]]
-        box = problems.of(lambda: tuple(_positive(length, "m", "--housing") for length in lengths))
-    elif housing and re.search(r"\d\s*[x*×]", housing):
+    sides = [side.strip() for side in re.split("[x*×]", housing or "")]
+    unit = sides[-1].lstrip("0123456789., ")
+    if len(sides) > 1 and (len(sides) != 3 or not all(sides)):
         problems.append(f'--housing = "{housing}" has not three sides. Write "800x370x430 mm", or an area, "1.6 m2".')
+    elif len(sides) > 1 and not unit:
+        problems.append(f'--housing = "{housing}" has no unit. Write "{housing} mm".')
+    elif len(sides) > 1:
+        lengths = [f"{side} {unit}" if side[-1] in "0123456789.," else side for side in sides]
+        box = problems.of(lambda: tuple(_positive(length, "m", "--housing") for length in lengths))
     elif housing is not None:
         area = problems.of(lambda: _positive(housing, "m2", "--housing"))
     problems.check()
