@@ -9,6 +9,7 @@ import csv
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -32,7 +33,7 @@ ENCODINGS = ("utf-8-sig", "cp1252")
 SEPARATORS = ",;\t"
 
 #: A number with a decimal comma, in a table whose columns no commas separate.
-_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
+_COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
 #: A number whose point or comma may separate thousands, and one where it separates decimals.
 _GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
 _DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?")
@@ -149,15 +150,42 @@ def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
         rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
-    if sign != "," and (problem := _two_readings(path.name, rows)):
+    if sign != "," and (problem := two_readings(path.name, rows)):
         raise DataError(problem)
-    plain = str.strip if sign == "," else _cell
-    cells = [(line, list(map(plain, row))) for line, row in rows]
+    cells = [(line, plain(row, sign)) for line, row in rows]
     return [(line, row) for line, row in cells if any(row)]
 
 
-def _two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str | None:
-    """Where a point or a comma may separate decimals or thousands, with both readings; None where all is clear."""
+def written(head: bytes) -> tuple[str, str]:
+    """Encoding of a table and what separates its columns, by its first line.
+
+    Args:
+        head: the line
+    """
+    for encoding in ENCODINGS:
+        with suppress(UnicodeDecodeError):
+            return encoding, max(SEPARATORS, key=head.decode(encoding).count)
+    return ENCODINGS[0], SEPARATORS[0]
+
+
+def plain(cells: Sequence[str], sign: str) -> list[str]:
+    """Cells without spaces round them, decimal commas as points.
+
+    Args:
+        cells: of a row
+        sign: what separates columns; decimals have a point where it is a comma
+    """
+    stripped = list(map(str.strip, cells))
+    return stripped if sign == "," else [_COMMA.sub(r"\1.\2", cell) for cell in stripped]
+
+
+def two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str | None:
+    """Where a point or a comma may separate decimals or thousands, with both readings; None where all is clear.
+
+    Args:
+        name: of the file
+        rows: line and cells of each
+    """
     sure: set[str] = set()
     unsure: dict[str, tuple[int, str]] = {}
     for line, cell in ((line, cell.strip()) for line, row in rows for cell in row):
@@ -173,12 +201,6 @@ def _two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str |
                 " all decimals with the same one."
             )
     return None
-
-
-def _cell(cell: str) -> str:
-    """A cell without spaces round it, its decimal comma as a point."""
-    cell = cell.strip()
-    return f"{match[1]}.{match[2]}" if (match := _COMMA.fullmatch(cell)) else cell
 
 
 def numbers(cells: Sequence[str]) -> np.ndarray | None:

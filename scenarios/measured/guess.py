@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -68,7 +68,7 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
     )
     problems.check(DataError)
     known = {name: column for name, column in columns.items() if column}
-    known |= _context([h for h in header if h not in known.values()], columns)
+    known |= _context({name: column for name, column in cells.items() if name not in known.values()}, columns)
     wanted = wanted_sensors(scenario)
     marks = [
         (mark, -place, name, column)
@@ -97,13 +97,14 @@ def wanted_sensors(scenario: Scenario) -> dict[str, Sensor]:
     return declared | {s.reads: s for s in sensors_of(scenario, more) if s.reads in more.columns}
 
 
-def _context(header: Iterable[str], columns: Mapping[str, str]) -> dict[str, str]:
-    """Columns of the context by whole words."""
-    stems = {h: split_unit(h)[0].casefold() for h in header}
+def _context(cells: Mapping[str, Sequence[str]], columns: Mapping[str, str]) -> dict[str, str]:
+    """Columns of the context by whole words; an oil has a name."""
+    stems = {h: split_unit(h)[0].casefold() for h in cells}
     found = {}
     for name in (n for n in CONTEXT if n not in columns):
         words = (name.casefold(), split_unit(name)[0].casefold(), *OTHER.get(name, ()))
-        if meant := [h for h, stem in stems.items() if stem in words or h.casefold() in words]:
+        meant = [h for h, stem in stems.items() if stem in words or h.casefold() in words]
+        if meant and not (name == "oil" and numbers(cells[meant[0]]) is not None):
             found[name] = meant[0]
     return found
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 import math
+import re
 import zlib
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
@@ -19,7 +20,7 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ..csv_table import header_problems, in_si, raise_all, split_unit
+from ..csv_table import header_problems, in_si, plain, raise_all, split_unit, two_readings, written
 from ..duty import LATEST, YEAR
 from ..scenario import Scenario
 from .card import Card
@@ -30,7 +31,9 @@ from .sensors import SI, sensors_of, without_sign
 from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
-TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
+TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t", "zeit", "zeitstempel", "datum_uhrzeit")
+#: A date as it is written in Germany.
+_DATE = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
 #: What a column holds that is no calendar's.
 NUMBERS = "numbers"
 #: A gap of more than so many samples starts a new stretch.
@@ -154,7 +157,8 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
 
 def find_times(header: Iterable[str]) -> list[str]:
     """The columns of time."""
-    return [h for h in header if h in TIMES or split_unit(h)[0] in TIMES]
+    names = {h: (h.strip(), split_unit(h)[0]) for h in header}
+    return [h for h, own in names.items() if not {re.sub("[ /]", "_", n.casefold()) for n in own}.isdisjoint(TIMES)]
 
 
 def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
@@ -186,14 +190,17 @@ def read_columns(
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path, used)
-        with _open(path) as file:
-            reader = csv.reader(file)
+        text, sign = _open(path)
+        with text as file:
+            reader = csv.reader(file, delimiter=sign)
             header = [h.strip() for h in next(reader, [])]
             raise_all(header_problems(path.name, header), path.name)
-            kept, lines = used(header), []
+            kept, lines = used(header), list[np.ndarray]()
             parts: dict[str, list[Sequence[Any]]] = {h: [] for h in header if h in kept}
             rows = ((reader.line_num, row) for row in reader if any(row))
             while block := list(islice(rows, BLOCK)):
+                if sign != "," and not lines and (problem := two_readings(path.name, block)):
+                    raise DataError(problem)
                 if ragged := next((line for line, row in block if len(row) != len(header)), None):
                     raise DataError(
                         [f"{path.name} line {ragged}: has not {len(header)} cells as the header has. Mend the row."]
@@ -201,7 +208,7 @@ def read_columns(
                 lines.append(np.array([line for line, _ in block]))
                 columns = list(zip(*(row for _, row in block), strict=True))
                 for h, k in zip(parts, map(header.index, parts), strict=True):
-                    parts[h].append(_compact(columns[k]))
+                    parts[h].append(_compact(plain(columns[k], sign)))
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
     except (OSError, EOFError, ValueError, zlib.error, csv.Error):
@@ -228,10 +235,12 @@ def _join(parts: Sequence[Sequence[Any]]) -> Sequence[Any]:
     return list(chain.from_iterable(parts))
 
 
-def _open(path: Path) -> IO[str]:
-    if reading(path).suffix == ".gz":
-        return gzip.open(path, "rt", encoding="utf-8-sig")
-    return path.open(encoding="utf-8-sig")
+def _open(path: Path) -> tuple[IO[str], str]:
+    """A table as text, and what separates its columns; below its head there are numbers, alike in all encodings."""
+    opened = gzip.open if reading(path).suffix == ".gz" else open
+    with opened(path, "rb") as file:
+        encoding, sign = written(file.readline())
+    return cast(IO[str], opened(path, "rt", encoding=encoding, errors="replace")), sign
 
 
 def _parquet(
@@ -306,7 +315,8 @@ def parse_time(cell: Any) -> tuple[float, str]:
         if not math.isfinite(number := float(cell)):
             raise ValueError
         return number, NUMBERS
-    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(str(cell).strip())
+    text = _DATE.sub(r"\3-\2-\1", str(cell).strip())
+    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(text)
     if stamp.tzinfo:
         return stamp.timestamp(), "times with a zone"
     return stamp.replace(tzinfo=UTC).timestamp(), "times without a zone"

@@ -80,8 +80,7 @@ def oil_problems(name: str, places: Mapping[str, str], card: Card) -> list[str]:
     unknown = [oil for oil in places if oil and oil not in known]
     if card.oil.nu40 is None and not card.oil.name:
         return [
-            f'{places[oil]}: unknown oil "{oil}".{suggestion(oil, known) or " Known: " + ", ".join(known) + "."}'
-            for oil in unknown
+            f'{places[oil]}: unknown oil "{oil}".{suggestion(oil, known) or " See `gearheat list`."}' for oil in unknown
         ]
     if len(unknown) < 2:
         return []

@@ -17,7 +17,7 @@ from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card
-from .logs import TIMES
+from .logs import find_times
 from .read import place_sensor
 from .sensors import DIRECTIONS, SI, floats, sensors_of
 from .table import PLACES, Campaign, Course, Series
@@ -194,7 +194,7 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     named = {
         c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT
     }
-    time = next((h for h in header if split_unit(h)[0] in TIMES), "time_s")
+    time = next(iter(find_times(header)), "time_s")
     columns = [*named.values(), Column(time, "time since the start of the test", at_least=0.0)]
     columns += [Column(s.column, s.reads, required=False) for s in sensors]
     table, wrong = parse(path, columns)

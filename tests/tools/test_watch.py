@@ -63,6 +63,18 @@ def test_a_window_is_answered_with_all_that_has_come(sensors: tuple[Sensor, ...]
     assert as_text(found[2]) == "2016-03-01T02:20:00Z one: ALARM: no cause stands out"
 
 
+def test_a_german_stream_says_the_same(sensors: tuple[Sensor, ...]) -> None:
+    lines = [HEAD, *map(line, range(16))]
+    german = [row.replace(",", ";").replace(".", ",") for row in lines]
+    found = []
+    for rows in (lines, german):
+        store = Store(None, "")
+        for _ in events(sensors, Stream(io.BytesIO("\n".join(rows).encode()), "one"), store):
+            pass
+        found.append(said(store))
+    assert found[0] and found[0] == found[1]
+
+
 def test_times_without_a_calendar_are_seconds(tmp_path: Path) -> None:
     lines = [f"{k / 6:.6f},1500,8000,20,50" for k in range(17)]
     text = "\n".join((HEAD.replace("time_utc", "time_h"), *lines)).encode()

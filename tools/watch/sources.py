@@ -13,6 +13,7 @@ from threading import Thread
 from typing import IO, Any, Protocol
 
 from ...model.errors import DataError
+from ...scenarios.csv_table import plain, written
 from ...scenarios.measured.logs import read_columns
 
 #: Between two looks at files that may have grown [s].
@@ -103,14 +104,16 @@ class Files:
                 return
             if offset < len(head) or path.stat().st_size < offset:  # made anew: what is known counts once
                 offset, number = len(head), 1
-            header = _cells_of(head)
+            how = written(head)
+            header = _cells_of(head, *how)
             file.seek(offset)
             for raw in file:
                 if not (raw.endswith(b"\n") or self.once):
                     return
                 offset, number = offset + len(raw), number + 1
                 if raw.strip():
-                    yield _row(machine, header, _cells_of(raw), f"{path.name} line {number}", name, [offset, number])
+                    cells = _cells_of(raw, *how)
+                    yield _row(machine, header, cells, f"{path.name} line {number}", name, [offset, number])
 
     def _changed(self, machine: str, path: Path) -> Iterator[Row]:
         """Rows after the last one that was read, of a file that has been written anew."""
@@ -145,7 +148,7 @@ class Stream:
         """Rows as they come."""
         queue: Queue[bytes] = Queue(10_000)
         Thread(target=self._read, args=[queue], daemon=True).start()
-        header: list[str] = []
+        header, how = list[str](), written(b"")
         number = 0
         for raw in queued(queue):
             if raw == b"":
@@ -154,9 +157,10 @@ class Stream:
             if raw is None or not raw.strip():
                 yield None
             elif not header:
-                header = _cells_of(raw)
+                how = written(raw)
+                header = _cells_of(raw, *how)
             else:
-                yield _row(self.machine, header, _cells_of(raw), f"line {number}", "", None)
+                yield _row(self.machine, header, _cells_of(raw, *how), f"line {number}", "", None)
 
     def kept(self) -> None:
         """A stream comes once."""
@@ -180,8 +184,8 @@ def _stem(name: str) -> str:
     return next((name.removesuffix(end) for end in (*WHOLE, *GROWING) if name.endswith(end)), name)
 
 
-def _cells_of(raw: bytes) -> list[str]:
-    return next(csv.reader([raw.decode("utf-8-sig", errors="replace")]), [])
+def _cells_of(raw: bytes, encoding: str, sign: str) -> list[str]:
+    return plain(next(csv.reader([raw.decode(encoding, errors="replace")], delimiter=sign), []), sign)
 
 
 def _row(machine: str, header: list[str], cells: list[Any], where: str, source: str, place: Any) -> Row:

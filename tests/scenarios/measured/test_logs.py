@@ -51,6 +51,21 @@ def test_gzip_and_parquet_hold_the_same(tmp_path: Path) -> None:
     assert np.array_equal(plain.time, same.time)
 
 
+@pytest.mark.parametrize(("sign", "encoding"), [(";", "cp1252"), ("\t", "utf-8")])
+def test_a_german_log_holds_the_same(tmp_path: Path, sign: str, encoding: str) -> None:
+    plain = read(tmp_path / "a.csv", lines())
+    days = ["{2}.{1}.{0} {3}".format(*row[:10].split("-"), row[11:16]) for row in lines()]
+    cells = [",".join([day, row.partition(",")[2], "größer"]) for day, row in zip(days, lines(), strict=True)]
+    text = "\n".join([HEAD.replace("time_utc", "Datum/Uhrzeit") + ",Bemerkung °", *cells])
+    (path := tmp_path / "b.csv").write_text(text.replace(",", sign).replace(".", ",").replace(",03,", ".03."), encoding)
+    with gzip.open(tmp_path / "b.csv.gz", "wb") as file:
+        file.write(path.read_bytes())
+    for same in (path, tmp_path / "b.csv.gz"):
+        log = read_log(same, load("wind_turbine"), read_card(None))
+        assert all(np.array_equal(log.values[name], values) for name, values in plain.values.items())
+        assert np.array_equal(log.time, plain.time)
+
+
 def test_gaps_and_segments_begin_stretches(tmp_path: Path) -> None:
     rows = lines()
     assert read(tmp_path / "a.csv", rows[:20] + rows[30:]).stretch.max() == 1
