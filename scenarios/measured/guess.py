@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -30,6 +31,8 @@ PART = 8
 KIND = 4
 #: Mark of a column that has a word of a sensor's end.
 END = 2
+#: Letters of a word that must stand alone.
+SHORT = 3
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,8 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
         if name not in known and column not in known.values():
             known[name] = column
     known = {name: column for name, column in known.items() if columns.get(name) != ""}
-    card = Card(columns=known, units=_units(known, wanted) | dict(said.units), name=path.name)
+    units = _units(known, wanted) | dict(said.units)
+    card = Card(columns=known, units=units, sensors=_driving(known, wanted), name=path.name)
     return _turned(card, scenario, cells, said.magnitudes)
 
 
@@ -117,12 +121,14 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
     if unit and not _fits(unit, sensor):
         return 0
     low, part = stem.casefold(), sensor.reads.partition(".")[0]
-    mark = KIND * any(word in low for word in WORDS.get(sensor.kind, ())) + PART * (part in low)
-    shaft = part in scenario.spec.of_type(ShaftEnd.__name__)
-    if shaft and (said := {end for end, words in ENDS.items() if any(word in low for word in words)}):
-        if _end(scenario, part) not in said:
+    kind = any(word in low for word in WORDS.get(sensor.kind, ()))
+    mark = KIND * kind + PART * (part in low)
+    if part in scenario.spec.of_type(ShaftEnd.__name__):
+        alone = set(re.findall(r"[^\W\d_]+|\d+", low))
+        said = {end for end, words in ENDS.items() if any(w in low if len(w) > SHORT else w in alone for w in words)}
+        if not (kind or unit) or (said and _end(scenario, part) not in said):
             return 0
-        mark += END
+        mark += END if said else 0
     alone = sum(other.kind == sensor.kind for other in wanted.values()) == 1
     return mark + (1 if unit and (mark or sensor.role == "given" or alone) and SI[sensor.kind] != "K" else 0)
 
@@ -148,9 +154,17 @@ def _units(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str, 
     return {column: USUAL[SI[wanted[name].kind]] for name, column in bare.items() if SI[wanted[name].kind] in USUAL}
 
 
+def _driving(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str, CardSensor]:
+    """Sensors of other shaft ends that are given in the place of those that usually are and have no column."""
+    shafts = {name: sensor for name, sensor in wanted.items() if sensor.kind in ("speed", "torque")}
+    lacking = [s.kind for name, s in shafts.items() if s.role == "given" and name not in known]
+    others = {s.kind: s for name, s in shafts.items() if s.role == "read" and name in known}
+    return {s.name: CardSensor(reads=s.reads, role="given") for kind, s in others.items() if kind in lacking}
+
+
 def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], said: Mapping[str, bool]) -> Card:
     """The card with the sensors whose columns hold magnitudes: as said, or never below zero where the model's are."""
-    nominal, found = Nominal(scenario), {}
+    nominal, found = Nominal(scenario), dict(card.sensors)
     for sensor in sensors_of(scenario, card):
         column = numbers([cell for cell in cells.get(sensor.column, ()) if cell])
         guessable = sensor.signs == (1.0, 1.0) and SI[sensor.kind] != "K"
@@ -158,5 +172,6 @@ def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], 
         positive = guessable and above and nominal.value(sensor.reads) < 0
         if (magnitude := said.get(sensor.name, positive or None)) is not None:
             signs = {} if magnitude else {"signs": [1.0, 1.0]}
-            found[sensor.name] = CardSensor.model_validate({"reads": sensor.reads, "magnitude": magnitude, **signs})
+            role = {"role": sensor.role} if sensor.name in found else {}
+            found[sensor.name] = CardSensor.model_validate({"reads": sensor.reads, "magnitude": magnitude, **signs, **role})
     return card.model_copy(update={"sensors": found})

@@ -114,6 +114,11 @@ class _Reader:
         if not (points or any(s.role == "read" for s in self.sensors)):
             names = ", ".join(s.column or s.name for s in declared if s.role == "read")
             self.problems.append(f"{path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
+        if self.problems and not (points or card.columns):
+            self.problems.append(
+                f"Or have the columns guessed: `gearheat card {scenario.name} --data {path.name} -o card.toml`, and give"
+                " --card card.toml."
+            )
 
     def campaign(self) -> Campaign:
         """All of the table, or all of its problems."""

@@ -75,6 +75,18 @@ def test_german_columns_are_guessed_with_units_and_signs(table: Path, tmp_path: 
         gh.card("helical_two_stage", table, columns={"T_wall": "Gehause [°C]"})
 
 
+def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
+    (path := tmp_path / "feld.csv").write_text(
+        "n_an [1/min];M1 [Nm];Öl;Halle\n" + "".join(f"{600 + 100 * k};{12 + k},4;{22 + 2 * k},2;19,4\n" for k in range(7)),
+        encoding="utf-8",
+    )
+    found = gh.card("helical_two_stage", path)
+    assert not found.problems
+    assert found.columns["n_input"] == "n_an [1/min]" and found.columns["input.tau"] == "M1 [Nm]"
+    assert found.columns["T_oil"] == "Öl" and "T_output" not in found.columns
+    assert found.as_dict()["sensors"]["T_input"]["role"] == "given"
+
+
 def test_without_nicegui_the_command_says_which_extra_it_needs(gearheat, monkeypatch, tmp_path) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr("gearheat.tools.desk.find_spec", lambda name: None)
     answer = gearheat("desk", "-o", tmp_path / "desk")

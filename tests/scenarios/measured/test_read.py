@@ -138,7 +138,8 @@ def test_what_drives_the_model_must_be_there(read, helical):
     columns = {c: v for c, v in helical.items() if c not in ("n_input_rpm", "T_amb_C")}
     with pytest.raises(DataError) as error:
         read("helical_two_stage", {**columns, "n_inputt_rpm": helical["n_input_rpm"]})
-    first, second = error.value.problems
+    first, second, guess = error.value.problems
+    assert "`gearheat card helical_two_stage --data" in guess
     assert '"n_input_rpm" drives the model (input.w) and is missing. Did you mean "n_inputt_rpm"?' in first
     assert '"T_amb_C" drives the model (room.T)' in second
 
