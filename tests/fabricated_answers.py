@@ -47,7 +47,8 @@ def replayed() -> None:
     methods = ("the rig", "one node", "regression on present and past inputs", "last reading")
     free = {m: {s: 1.25 * (k + 1) + j for j, s in enumerate(SENSORS)} for k, m in enumerate(methods)}
     ahead = {m: {s: tuple(0.5 * h**0.5 for h in HOURS) for s in SENSORS} for m in methods}
-    logs = [Replayed(name, 1000, free, ahead, {}, np.zeros(1)) for name in ("R80711 before 2016", "R80721")]
+    units = dict.fromkeys(SENSORS, "K")
+    logs = [Replayed(name, 1000, free, ahead, units, {}, np.zeros(1)) for name in ("R80711 before 2016", "R80721")]
     measured.print_replays(Replays(tuple(logs)))
 
 

@@ -124,8 +124,10 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
     kind = any(word in low for word in WORDS.get(sensor.kind, ()))
     mark = KIND * kind + PART * (part in low)
     if part in scenario.spec.of_type(ShaftEnd.__name__):
-        alone = set(re.findall(r"[^\W\d_]+|\d+", low))
-        said = {end for end, words in ENDS.items() if any(w in low if len(w) > SHORT else w in alone for w in words)}
+        words_alone = set(re.findall(r"[^\W\d_]+|\d+", low))
+        said = {
+            end for end, words in ENDS.items() if any(w in low if len(w) > SHORT else w in words_alone for w in words)
+        }
         if not (kind or unit) or (said and _end(scenario, part) not in said):
             return 0
         mark += END if said else 0
@@ -159,7 +161,8 @@ def _driving(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str
     shafts = {name: sensor for name, sensor in wanted.items() if sensor.kind in ("speed", "torque")}
     lacking = [s.kind for name, s in shafts.items() if s.role == "given" and name not in known]
     others = {s.kind: s for name, s in shafts.items() if s.role == "read" and name in known}
-    return {s.name: CardSensor(reads=s.reads, role="given") for kind, s in others.items() if kind in lacking}
+    given = {s.name: {"reads": s.reads, "role": "given"} for kind, s in others.items() if kind in lacking}
+    return {name: CardSensor.model_validate(keys) for name, keys in given.items()}
 
 
 def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], said: Mapping[str, bool]) -> Card:
@@ -172,6 +175,7 @@ def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], 
         positive = guessable and above and nominal.value(sensor.reads) < 0
         if (magnitude := said.get(sensor.name, positive or None)) is not None:
             signs = {} if magnitude else {"signs": [1.0, 1.0]}
-            role = {"role": sensor.role} if sensor.name in found else {}
-            found[sensor.name] = CardSensor.model_validate({"reads": sensor.reads, "magnitude": magnitude, **signs, **role})
+            own = found[sensor.name].model_dump(exclude_unset=True) if sensor.name in found else {}
+            keys = {**own, "reads": sensor.reads, "magnitude": magnitude, **signs}
+            found[sensor.name] = CardSensor.model_validate(keys)
     return card.model_copy(update={"sensors": found})

@@ -116,8 +116,8 @@ class _Reader:
             self.problems.append(f"{path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
         if self.problems and not (points or card.columns):
             self.problems.append(
-                f"Or have the columns guessed: `gearheat card {scenario.name} --data {path.name} -o card.toml`, and give"
-                " --card card.toml."
+                f"Or have the columns guessed: `gearheat card {scenario.name} --data {path.name} -o card.toml`, and"
+                " give --card card.toml."
             )
 
     def campaign(self) -> Campaign:

@@ -76,10 +76,8 @@ def test_german_columns_are_guessed_with_units_and_signs(table: Path, tmp_path: 
 
 
 def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
-    (path := tmp_path / "feld.csv").write_text(
-        "n_an [1/min];M1 [Nm];Öl;Halle\n" + "".join(f"{600 + 100 * k};{12 + k},4;{22 + 2 * k},2;19,4\n" for k in range(7)),
-        encoding="utf-8",
-    )
+    rows = [f"{600 + 100 * k};{12 + k},4;{22 + 2 * k},2;19,4" for k in range(7)]
+    (path := tmp_path / "feld.csv").write_text("\n".join(["n_an [1/min];M1 [Nm];Öl;Halle", *rows]), encoding="utf-8")
     found = gh.card("helical_two_stage", path)
     assert not found.problems
     assert found.columns["n_input"] == "n_an [1/min]" and found.columns["input.tau"] == "M1 [Nm]"

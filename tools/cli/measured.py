@@ -221,13 +221,13 @@ def print_calibration(fit: gh.Calibration) -> None:
 
 def print_replays(found: gh.Replays) -> None:
     """Print errors of free runs and by hours ahead, log by log."""
-    sensors = list(next(iter(found.logs[0].free.values())))
+    units, first = found.logs[0].units, next(iter(found.logs[0].units))
     hours = found.as_dict()["hours"]
     for r in found.logs:
-        rows = [[m, *(f"{e[s]:.2f}" for s in sensors)] for m, e in r.free.items()]
-        title = f"{r.name}, free run from the first sample of each stretch: RMSE [K]"
-        console.table(title, ["method", *sensors], rows)
-        rows = [[m, *(f"{v:.2f}" for v in e[sensors[0]])] for m, e in r.ahead.items()]
-        title = f"{r.name}, {sensors[0]}: RMSE [K] by hours ahead"
+        rows = [[m, *(f"{e[s]:.2f}" for s in units)] for m, e in r.free.items()]
+        title = f"{r.name}, free run from the first sample of each stretch: RMSE"
+        console.table(title, ["method", *(f"{s} [{unit}]" for s, unit in units.items())], rows)
+        rows = [[m, *(f"{v:.2f}" for v in e[first])] for m, e in r.ahead.items()]
+        title = f"{r.name}, {first}: RMSE [{units[first]}] by hours ahead"
         if known := hours[: len(rows[0]) - 1]:  # no stretch is long enough for the others
             console.table(title, ["method", *(f"{h:g} h" for h in known)], rows)

@@ -16,6 +16,7 @@ from ...model.units import from_si
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
+from ...scenarios.measured.sensors import SI
 from ..diagnose.infer.logs import filter_of, season_of
 from ..diagnose.model.logs import Filter
 from ..diagnose.model.windows import Windows, windows
@@ -47,6 +48,7 @@ class Replayed:
         rows: number of samples
         free: method -> sensor -> error without any correction from the first sample of each stretch
         ahead: method -> sensor -> error at each of `HOURS` for which a stretch is long enough
+        units: sensor -> SI unit
         shown: free run of the rig and readings of the longest stretch, thermometer -> (2, n)
         time: of that stretch [s] (n,)
     """
@@ -55,6 +57,7 @@ class Replayed:
     rows: int
     free: Mapping[str, Mapping[str, float]]
     ahead: Mapping[str, Mapping[str, tuple[float, ...]]]
+    units: Mapping[str, str]
     shown: Mapping[str, np.ndarray]
     time: np.ndarray
 
@@ -72,13 +75,13 @@ class Replays(Display):
     @property
     def title(self) -> str:
         """The logs."""
-        return f"{', '.join(log.name for log in self.logs)}: free runs, RMSE [K]"
+        return f"{', '.join(log.name for log in self.logs)}: free runs, RMSE"
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Errors of free runs, a row for each log and method."""
-        sensors = list(next(iter(self.logs[0].free.values())))
-        rows = [(r.name, method, *(e[s] for s in sensors)) for r in self.logs for method, e in r.free.items()]
-        return ("log", "method", *sensors), rows
+        units = self.logs[0].units
+        rows = [(r.name, method, *(e[s] for s in units)) for r in self.logs for method, e in r.free.items()]
+        return ("log", "method", *(f"{s} [{unit}]" for s, unit in units.items())), rows
 
     def as_dict(self) -> dict[str, Any]:
         """Errors of free runs and by hours ahead."""
@@ -240,7 +243,8 @@ def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
     n = lengths[longest]
     both = {s: np.array([shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
     pictured = {s.name: both[s.name] for s in log.read if s.kind.endswith("_temp")}
-    return Replayed(log.name, log.n, free, ahead, pictured, log.time[whole.rows[longest, :n]])
+    units = {s.name: SI[s.kind] for s in sorted(log.read, key=lambda s: own.read.index(s.name))}
+    return Replayed(log.name, log.n, free, ahead, units, pictured, log.time[whole.rows[longest, :n]])
 
 
 def _run_freely(own: Filter, data: Windows) -> np.ndarray:
