@@ -166,14 +166,15 @@ def _driving(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str
 
 
 def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], said: Mapping[str, bool]) -> Card:
-    """The card with the sensors whose columns hold magnitudes: as said, or never below zero where the model's are."""
+    """The card with what columns hold: magnitudes as said, or where no cell is below zero and the model is."""
     nominal, found = Nominal(scenario), dict(card.sensors)
     for sensor in sensors_of(scenario, card):
         column = numbers([cell for cell in cells.get(sensor.column, ()) if cell])
-        guessable = sensor.signs == (1.0, 1.0) and SI[sensor.kind] != "K"
-        above = column is not None and len(column) > 0 and column.min() >= 0
-        positive = guessable and above and nominal.value(sensor.reads) < 0
-        if (magnitude := said.get(sensor.name, positive or None)) is not None:
+        signed, magnitude = sensor.signs == (1.0, 1.0), said.get(sensor.name)
+        if magnitude is None and column is not None and len(column) and SI[sensor.kind] != "K":
+            above = bool(column.min() >= 0)
+            magnitude = above if above == signed and (not above or nominal.value(sensor.reads) < 0) else None
+        if magnitude is not None:
             signs = {} if magnitude else {"signs": [1.0, 1.0]}
             own = found[sensor.name].model_dump(exclude_unset=True) if sensor.name in found else {}
             keys = {**own, "reads": sensor.reads, "magnitude": magnitude, **signs}

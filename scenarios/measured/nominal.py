@@ -5,7 +5,7 @@ The power balance of measured rows: what goes in at the shaft ends and does not 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 
@@ -15,6 +15,7 @@ from ...model.core.flat import FlatModel
 from ...model.errors import GearheatError
 from ...model.parts.shaft import ShaftEnd
 from ...model.run.steady import steady
+from ...model.units import text
 from ..scenario import Scenario
 from .table import Campaign, Sensor
 
@@ -50,9 +51,10 @@ class Nominal:
 
     def at(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
         """All values at other inputs and parameters, by path; None where there is no steady state."""
-        known = {path: v for path, v in self.scenario.operating_point.items() if path in self.flat.index}
+        asked = {**self.scenario.operating_point, **values}  # which may name what follows as the rig is driven
+        known = {path: v for path, v in asked.items() if self.flat.index.get(path, ("",))[0] in ("input", "parameter")}
         try:
-            result = steady(self.flat, known | {path: v for path, v in values.items() if path in self.flat.index})
+            result = steady(self.flat, known)
         except GearheatError:
             return None
         return {name: float(column[0]) for name, column in result.columns.items()}
@@ -109,3 +111,17 @@ def drive_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
         return driven
     own = Nominal(scenario).operating  # a load says no sign
     return replace(driven, operating_point={**stated, **{path: own[path] for path in sorted(missing) if path in own}})
+
+
+def unmeasured(nominal: Nominal, name: str, sensors: Iterable[Sensor]) -> Iterator[str]:
+    """What drives the model at its shafts and no sensor gives, in words.
+
+    Args:
+        nominal: the rig as it is driven
+        name: of the file
+        sensors: that it has
+    """
+    rig = nominal.scenario
+    for path in sorted(rig.driven_paths() & rig.shaft_paths() - {s.reads for s in sensors}):
+        taken = text(nominal.value(path), nominal.flat.quantity(path).unit, 4)
+        yield f"{name}: nothing says {path}, which drives the model: {taken} of the rig is taken in all rows."

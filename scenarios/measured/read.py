@@ -22,7 +22,7 @@ from .card import Card
 from .card_names import misnamed
 from .checks import check
 from .lubrication import oil_problems, oil_values, oil_warnings
-from .nominal import Nominal, drive_by
+from .nominal import Nominal, drive_by, unmeasured
 from .sensors import (
     CONTEXT,
     DIRECTIONS,
@@ -137,7 +137,8 @@ class _Reader:
         found = self._ordered(cells, values, minutes)
         nominal = Nominal(drive_by(self.scenario, self.sensors))
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
-        warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
+        own = (*oil_warnings(self.scenario, found.oil, self.card), *unmeasured(nominal, found.name, self.sensors))
+        warned = replace(found, warnings=(*found.warnings, *own))
         return _with_unread(check(warned, nominal, known, points=self.points))
 
     def _columns(self) -> list[Column]:

@@ -43,7 +43,7 @@ def default_card(scenario: Scenario, prior_sd: Mapping[str, float], known: Card 
         columns={s.name: s.column for s in sensors} | context,
         units={s.column: s.unit for s in sensors if s.unit},
         channels={s.name: _channel(s) for s in sensors},
-        sensors={s.name: _sensor(s) for s in sensors},
+        sensors={s.name: _sensor(s, given) for s in sensors},
         prior_sd=dict(prior_sd),
         protocol=Protocol(stop_min=stop),
         lubrication=lubricants(scenario.spec),
@@ -59,9 +59,11 @@ def _channel(sensor: Sensor) -> Channel:
     return Channel(repeat_sd=text(sensor.repeat_sd, unit, 4), offset_sd=text(sensor.offset_sd, unit, 4))
 
 
-def _sensor(sensor: Sensor) -> CardSensor:
-    signs = {} if sensor.signs == (1.0, 1.0) else {"signs": list(sensor.signs)}
-    table = {"reads": sensor.reads, "kind": sensor.kind, "role": sensor.role, "magnitude": bool(signs)}
+def _sensor(sensor: Sensor, known: Card) -> CardSensor:
+    """A sensor in full; that its column has signs is written where that is said, as the rig's may hold magnitudes."""
+    turned, said = sensor.signs != (1.0, 1.0), known.sensors.get(sensor.name)
+    signs = {"signs": list(sensor.signs)} if turned or (said and said.signs) else {}
+    table = {"reads": sensor.reads, "kind": sensor.kind, "role": sensor.role, "magnitude": turned}
     return CardSensor.model_validate({**table, **signs})
 
 

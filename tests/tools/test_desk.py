@@ -15,6 +15,8 @@ import gearheat as gh
 import pytest
 from browser import CHROMIUM, Browser
 from gearheat.model.errors import DataError
+from gearheat.scenarios.given import scenario_of
+from gearheat.scenarios.measured.study import read_study
 
 NICEGUI = find_spec("nicegui") is not None
 needs_nicegui = pytest.mark.skipif(not NICEGUI, reason="the desk needs NiceGUI: pip install gearheat[desk]")
@@ -83,6 +85,35 @@ def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
     assert found.columns["n_input"] == "n_an [1/min]" and found.columns["input.tau"] == "M1 [Nm]"
     assert found.columns["T_oil"] == "Öl" and "T_output" not in found.columns
     assert found.as_dict()["sensors"]["T_input"]["role"] == "given"
+
+
+def test_cells_below_zero_are_no_magnitudes(tmp_path: Path) -> None:
+    rows = [f"{100 + 10 * k};-{300 + 20 * k};{50 + 2 * k};20" for k in range(7)]
+    (path := tmp_path / "feld.csv").write_text(
+        "\n".join(["n_carrier_rpm;T_sun_Nm;T_oil;T_amb", *rows]), encoding="utf-8"
+    )
+    card = gh.card("planetary", path).save(tmp_path / "card.toml")
+    study = read_study(scenario_of("planetary"), path, card)
+    assert study and study.campaign.values["T_sun"][0] == -300
+    assert study.given(0)["sun.tau"] == -300
+
+
+def test_a_torque_that_nothing_says_is_told(tmp_path: Path) -> None:
+    rows = [f"{2000 + 100 * k};{50 + 2 * k};20" for k in range(7)]
+    (path := tmp_path / "feld.csv").write_text("\n".join(["n_motor_rpm;T_oil;T_amb", *rows]), encoding="utf-8")
+    study = read_study(scenario_of("drum_motor"), path, gh.card("drum_motor", path).save(tmp_path / "card.toml"))
+    assert study
+    said = "feld.csv: nothing says motor_shaft.tau, which drives the model: 7.371 N.m of the rig is taken in all rows."
+    assert said in study.campaign.warnings
+
+
+def test_steady_points_are_played_from_the_state_of_what_drives(tmp_path: Path) -> None:
+    states = [gh.steady("helical_two_stage", set={"input.w": f"{600 + 100 * k} rpm"}) for k in range(6)]
+    rows = [f"{600 + 100 * k},{s['input.tau']:.3f},{s.to('oil.T', 'degC'):.3f},20" for k, s in enumerate(states)]
+    (path := tmp_path / "feld.csv").write_text("\n".join(["n_an [1/min],M1 [Nm],Öl,Halle", *rows]), encoding="utf-8")
+    card = gh.card("helical_two_stage", path).save(tmp_path / "card.toml")
+    fit = gh.calibrate("helical_two_stage", ["cooling.A"], data=path, card=card)
+    assert fit.found["rmse_before_K"] < 0.01
 
 
 def test_without_nicegui_the_command_says_which_extra_it_needs(gearheat, monkeypatch, tmp_path) -> None:  # type: ignore[no-untyped-def]
