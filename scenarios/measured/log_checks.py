@@ -10,7 +10,7 @@ from ...model.errors import DataError
 from ..csv_table import raise_all
 from ..scenario import Scenario
 from .checks import check
-from .nominal import Nominal, drive_by
+from .nominal import Nominal, drive_by, unmeasured
 from .placeholders import placeholders
 from .table import Campaign, Sensor
 
@@ -31,8 +31,8 @@ def check_log(
     lines: np.ndarray,
     step: float,
     scenario: Scenario,
-) -> None:
-    """Refuse a log that cannot be one of a rig.
+) -> tuple[str, ...]:
+    """Refuse a log that cannot be one of a rig; what the user should know of it.
 
     Args:
         name: of the file
@@ -51,7 +51,9 @@ def check_log(
             f"{name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
         )
     raise_all(list(placeholders(name, sensors, values, lines)), name)
-    check(_as_campaign(name, sensors, values, lines, step), Nominal(drive_by(scenario, sensors)), {})
+    nominal = Nominal(drive_by(scenario, sensors))
+    check(_as_campaign(name, sensors, values, lines, step), nominal, {})
+    return tuple(unmeasured(nominal, name, sensors))
 
 
 def _repeated(columns: Sequence[np.ndarray]) -> tuple[int, int] | None:

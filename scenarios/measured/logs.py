@@ -79,6 +79,7 @@ class Log(Sensed):
         lines: line of each row in the file (n,)
         dated: whether the time is that of a calendar
         gross: readings that were set aside
+        warnings: what the user should know of the file
     """
 
     name: str
@@ -90,6 +91,7 @@ class Log(Sensed):
     lines: np.ndarray
     dated: bool
     gross: tuple[Gross, ...] = field(default=())
+    warnings: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
@@ -151,8 +153,8 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
     sensors, values = without_sign(scenario, sensors, values)
     stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
     values, gross = _remove_outliers(name, values, sensors, stretch, lines)
-    check_log(name, sensors, values, lines, step, scenario)
-    return Log(name, sensors, values, time, stretch, step, lines, dated, gross)
+    warnings = check_log(name, sensors, values, lines, step, scenario)
+    return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings)
 
 
 def find_times(header: Iterable[str]) -> list[str]:

@@ -183,7 +183,7 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        warnings=tuple(filter(None, [_lacking(data)])),
+        warnings=tuple(filter(None, dict.fromkeys([_lacking(data), *(w for log in logs for w in log.warnings)]))),
     )
 
 
@@ -266,15 +266,7 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
 ) -> tuple[Rows, tuple[Picture, ...]]:
-    """The windows as rows, the machine's healthy past before those in question, and a picture a cause.
-
-    Args:
-        known: what the healthy logs say
-        asked: the logs in question
-        decision: what they lead to
-        spans: them as a campaign
-        read: the sensors that are compared
-    """
+    """The windows as rows, the machine's healthy past before those in question, and a picture a cause."""
     own, level = known.filter, known.levels.mean[0]
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")

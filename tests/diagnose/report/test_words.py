@@ -9,10 +9,13 @@ from gearheat.tools.diagnose.answer.findings import (
     Alarm,
     Answer,
     CauseSet,
+    Channel,
     Hypothesis,
     Played,
     Remainder,
     RemainderChannel,
+    Rows,
+    Said,
 )
 from gearheat.tools.diagnose.report import phrases
 from gearheat.tools.diagnose.report.page import render
@@ -48,6 +51,21 @@ def test_a_clean_campaign_names_no_cause() -> None:
     assert said.do == "Nothing needs doing."
     assert said.size == ""
     assert "93 ± 1 %" in said.sure
+
+
+def test_logs_that_lie_apart_from_the_file_do_not_agree_with_it() -> None:
+    one = clean()
+    channel = Channel(name="T_oil", kind="oil_temp", unit="degC", offset_sd=0.3)
+
+    def said(above: float, reference: str = "") -> Said:
+        about = one.about.model_copy(update={"logs": ("a.csv",), "reference": reference})
+        rows = Rows(row=(1, 2), channels={"T_oil": Rows.Values(measured=(90 + above, None), nominal=(90.0, 91.0))})
+        return with_words(one.model_copy(update={"about": about, "channels": (channel,), "rows": rows})).says
+
+    assert said(36.0).verdict.endswith("the machine is not as its file has it: T_oil lies 36 K above it.")
+    assert "--reference-logs" in said(-1.2).do and "1.2 K below it" in said(-1.2).verdict
+    for agrees in (said(0.8), said(36.0, reference="healthy.csv")):
+        assert (agrees.verdict, agrees.do) == (one.says.verdict, "Nothing needs doing.")
 
 
 def test_an_explanation_names_its_class_and_its_size_in_degrees_and_watts() -> None:

@@ -174,14 +174,7 @@ def simulate_design(
 def _with_checks(
     V: np.ndarray, known: Mapping[str, np.ndarray], checks: Sequence[Check], offset_sd: Mapping[str, float]
 ) -> np.ndarray:
-    """A covariance (m, m) with the readings of checks behind it, which share the tolerances of their sensors.
-
-    Args:
-        V: of the readings
-        known: term of a tolerance -> its effect on them (m,)
-        checks: to add
-        offset_sd: sensor -> its fixed tolerance
-    """
+    """A covariance (m, m) with the readings of checks behind it, which share the tolerances (m,) of their sensors."""
     m = len(V)
     found = block_diag(V, *(c.sd**2 * np.eye(len(c.true)) + c.standard**2 for c in checks))
     for sensor in dict.fromkeys(c.sensor for c in checks):

@@ -70,12 +70,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
 
 
 def _told(of: Shape | Size, ends: Sequence[float]) -> Estimate:
-    """A size or a shape with its interval.
-
-    Args:
-        of: what it is
-        ends: of the interval, and the value between them
-    """
+    """A size or a shape with its interval: low end, value, high end."""
     unit, (low, value, high) = convert(of, ends)
     bound = at_bound(ends[1], of.low, of.high)
     return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)

@@ -136,12 +136,7 @@ def _joined(cause: Cause, anew: list[Form]) -> Cause:
 
 
 def _deviations(at: Context, always: bool) -> Iterator[tuple[str, Callable[[Row], Num]]]:
-    """Ways in which a size may follow the point: name, factor; one half of the range is 1.
-
-    Args:
-        at: what it is made for
-        always: whether the same at all points is one of them
-    """
+    """Ways in which a size may follow the point, or always be the same: name, factor; one half of the range is 1."""
     if always:
         yield "", lambda row: 1.0
     for kind, words in (("speed", "by speed"), ("torque", "by load")):

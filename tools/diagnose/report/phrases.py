@@ -11,6 +11,10 @@ from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
 from ..library.entries import TABLE
 
+#: Mean deviation of a log that is told: this [K], and so many tolerances of the thermometer.
+FELT = 1.0
+TOLERANCES = 3.0
+
 #: Parts of a value are named where they are not more than these.
 FEW_PARTS = 3
 #: Share by which one error must exceed another to be worse.
@@ -218,6 +222,19 @@ def calibration(found: Findings, most: int) -> str:
     off = found.data_quality.nuisances
     more = [f"{len(off) - most} more"] if len(off) > most else []
     return "; ".join([*map(nuisance, off[:most]), *more])
+
+
+def levels(found: Findings) -> str:
+    """Logged temperatures that lie apart from those of the rig as it is filed, where no healthy log says otherwise."""
+    said = []
+    for channel in found.channels if found.about.logs and not found.about.reference else ():
+        values = found.rows.channels.get(channel.name)
+        pairs = zip(values.measured, values.nominal, strict=True) if values and channel.unit == "degC" else ()
+        off = [m - n for m, n in pairs if m is not None and n is not None]
+        mean = sum(off) / max(len(off), 1)
+        if abs(mean) > max(FELT, TOLERANCES * (channel.offset_sd or 0.0)):
+            said.append(f"{channel.name} lies {with_unit(abs(mean), 'K')} {'above' if mean > 0 else 'below'} it")
+    return ", ".join(said)
 
 
 def gain(found: Gain) -> str:
