@@ -153,8 +153,9 @@ def composed(
     if decision.verdict != "consistent" and not inputs.request.quick:
         held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         findings = findings.model_copy(update={"gain": held})
-    rows, drawn = _pictures(known, asked, decision, spans, logs.logs[0].read)
-    findings = findings.model_copy(update={"rows": rows, "pictures": drawn})
+    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0].read)
+    quality = findings.data_quality.model_copy(update={"as_filed": {} if logs.healthy else off})
+    findings = findings.model_copy(update={"rows": rows, "pictures": drawn, "data_quality": quality})
     return replace(told, findings=with_words(findings))
 
 
@@ -265,8 +266,8 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 
 def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
-) -> tuple[Rows, tuple[Picture, ...]]:
-    """The windows as rows, the machine's healthy past before those in question, and a picture a cause."""
+) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
+    """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
     own, level = known.filter, known.levels.mean[0]
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
@@ -296,4 +297,5 @@ def _pictures(
         best = int(np.argmax(np.nansum(before**2 - e**2, axis=0)))  # where most is taken away
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
-    return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found)
+    off = {s.name: float(e) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")}
+    return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off

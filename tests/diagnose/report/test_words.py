@@ -9,12 +9,10 @@ from gearheat.tools.diagnose.answer.findings import (
     Alarm,
     Answer,
     CauseSet,
-    Channel,
     Hypothesis,
     Played,
     Remainder,
     RemainderChannel,
-    Rows,
     Said,
 )
 from gearheat.tools.diagnose.report import phrases
@@ -53,16 +51,15 @@ def test_a_clean_campaign_names_no_cause() -> None:
     assert "93 ± 1 %" in said.sure
 
 
-def test_logs_that_lie_apart_from_the_file_do_not_agree_with_it() -> None:
+def test_a_rig_that_is_off_as_filed_does_not_simply_agree() -> None:
     one = clean()
-    channel = Channel(name="T_oil", kind="oil_temp", unit="degC", offset_sd=0.3)
 
     def said(above: float, reference: str = "") -> Said:
-        about = one.about.model_copy(update={"logs": ("a.csv",), "reference": reference})
-        rows = Rows(row=(1, 2), channels={"T_oil": Rows.Values(measured=(90 + above, None), nominal=(90.0, 91.0))})
-        return with_words(one.model_copy(update={"about": about, "channels": (channel,), "rows": rows})).says
+        quality = one.data_quality.model_copy(update={"as_filed": {"T_oil": above}})
+        about = one.about.model_copy(update={"reference": reference})
+        return with_words(one.model_copy(update={"about": about, "data_quality": quality})).says
 
-    assert said(36.0).verdict.endswith("the machine is not as its file has it: T_oil lies 36 K above it.")
+    assert said(36.0).verdict.endswith("once it is calibrated; as filed it is off: T_oil lies 36 K above it.")
     assert "--reference-logs" in said(-1.2).do and "1.2 K below it" in said(-1.2).verdict
     for agrees in (said(0.8), said(36.0, reference="healthy.csv")):
         assert (agrees.verdict, agrees.do) == (one.says.verdict, "Nothing needs doing.")

@@ -26,10 +26,6 @@ def _down(value: float) -> float:
     return math.floor(min(max(float(value), 0.0), 1.0) * 1e6 + 1e-6) / 1e6
 
 
-def _p(value: float) -> float:
-    return rounded(min(max(float(value), LEAST_P), 1.0), 4)
-
-
 def array(values: Iterable[Any]) -> tuple[float | None, ...]:
     """Numbers to the digits that are kept, None where there is none."""
     numbers = (None if v is None else float(v) for v in values)
@@ -41,7 +37,7 @@ Number = Annotated[float, AfterValidator(rounded), Field(allow_inf_nan=False)]
 #: A probability of a hypothesis.
 Probability = Annotated[float, AfterValidator(_down), Field(ge=0, le=1)]
 #: A p value; at 1e-6 it is at most that.
-P = Annotated[float, AfterValidator(_p), Field(ge=0, le=1)]
+P = Annotated[float, AfterValidator(lambda p: rounded(min(max(float(p), LEAST_P), 1.0), 4)), Field(ge=0, le=1)]
 #: An interval.
 Interval = tuple[Number, Number]
 #: A row of numbers, null where one is missing; takes arrays.

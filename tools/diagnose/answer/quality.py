@@ -43,6 +43,7 @@ def check_data(found: Found, h: Hypothesis) -> DataQuality:
         variance=scatters(found, h),
         repeated=list_repeats(found.problem.data.campaign),
         adequacy=adequacy(found, h),
+        as_filed=errors_as_filed(found.problem),
     )
 
 
@@ -147,6 +148,14 @@ def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     o = found.problem.data
     own = {s.name: np.flatnonzero(o.kind == i) for i, s in enumerate(o.read)}
     return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
+
+
+def errors_as_filed(problem: Problem) -> dict[str, float]:
+    """Thermometer -> mean of measured less simulated by the rig before it is calibrated [K]."""
+    o, sound = problem.data, ~np.isin(np.arange(problem.data.m), problem.entries_aside)
+    left = (problem.measured - problem.look(np.zeros(problem.nz)).shown)[problem.own]
+    own = {s.name: left[sound & (o.kind == i)] for i, s in enumerate(o.read) if s.kind.endswith("_temp")}
+    return {name: float(errors.mean()) for name, errors in own.items() if len(errors)}
 
 
 def list_repeats(campaign: Campaign) -> tuple[RepeatedPoint, ...]:

@@ -11,7 +11,7 @@ from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
 from ..library.entries import TABLE
 
-#: Mean deviation of a log that is told: this [K], and so many tolerances of the thermometer.
+#: Mean deviation from the rig as filed that is told: this [K], and so many tolerances of the thermometer.
 FELT = 1.0
 TOLERANCES = 3.0
 
@@ -224,17 +224,12 @@ def calibration(found: Findings, most: int) -> str:
     return "; ".join([*map(nuisance, off[:most]), *more])
 
 
-def levels(found: Findings) -> str:
-    """Logged temperatures that lie apart from those of the rig as it is filed, where no healthy log says otherwise."""
-    said = []
-    for channel in found.channels if found.about.logs and not found.about.reference else ():
-        values = found.rows.channels.get(channel.name)
-        pairs = zip(values.measured, values.nominal, strict=True) if values and channel.unit == "degC" else ()
-        off = [m - n for m, n in pairs if m is not None and n is not None]
-        mean = sum(off) / max(len(off), 1)
-        if abs(mean) > max(FELT, TOLERANCES * (channel.offset_sd or 0.0)):
-            said.append(f"{channel.name} lies {with_unit(abs(mean), 'K')} {'above' if mean > 0 else 'below'} it")
-    return ", ".join(said)
+def as_filed(found: Findings) -> str:
+    """Temperatures that lie apart from those of the rig as it is filed, where nothing healthy says otherwise."""
+    off = {} if found.about.reference else found.data_quality.as_filed
+    limits = {c.name: max(FELT, TOLERANCES * (c.offset_sd or 0.0)) for c in found.channels}
+    told = {name: mean for name, mean in off.items() if abs(mean) > limits[name]}
+    return ", ".join(f"{n} lies {with_unit(abs(m), 'K')} {'above' if m > 0 else 'below'} it" for n, m in told.items())
 
 
 def gain(found: Gain) -> str:

@@ -80,8 +80,8 @@ def _verdict(findings: Findings) -> str:
         return _claim(findings) + (f" Beside it the rig differs from its file: {off}." if off else "")
     if off:
         return f"No cause is needed, but the rig differs from its file: {off}."
-    if apart := phrases.levels(findings):
-        return f"Nothing has changed over the logs, but the machine is not as its file has it: {apart}."
+    if apart := phrases.as_filed(findings):
+        return f"The data agree with the model once it is calibrated; as filed it is off: {apart}."
     return "The data agree with the model within the stated accuracies."
 
 
@@ -174,10 +174,10 @@ def _do(findings: Findings) -> str:
                 "Check these values of the rig on the machine before its file is changed: the data alone do not"
                 " tell a wrong value from a fault of the same part."
             )
-        elif phrases.levels(findings):
+        elif phrases.as_filed(findings):
             steps.append(
-                "Give its healthy logs (--reference-logs), or mend the rig's file: these logs alone do not tell a"
-                " machine that is built otherwise from a fault that was there from their first sample on."
+                "Give healthy data, too (--reference, --reference-logs): these alone do not tell a machine that is"
+                " built otherwise from a fault that was there from their first on."
             )
         else:
             steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
