@@ -121,7 +121,9 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
     if unit and not _fits(unit, sensor):
         return 0
     low, part = stem.casefold(), sensor.reads.partition(".")[0]
-    kind = any(word in low for word in WORDS.get(sensor.kind, ()))
+    kind = _speaks(low, sensor.kind)
+    if sensor.kind == "wall_temp":  # of all bodies only the housing is called so
+        kind = kind and _speaks(f"{sensor.name} {part}".casefold(), sensor.kind)
     mark = KIND * kind + PART * (part in low)
     if part in scenario.spec.of_type(ShaftEnd.__name__):
         words_alone = set(re.findall(r"[^\W\d_]+|\d+", low))
@@ -133,6 +135,11 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
         mark += END if said else 0
     alone = sum(other.kind == sensor.kind for other in wanted.values()) == 1
     return mark + (1 if unit and (mark or sensor.role == "given" or alone) and SI[sensor.kind] != "K" else 0)
+
+
+def _speaks(low: str, kind: str) -> bool:
+    """Whether a name in small letters has a word of a kind of sensor."""
+    return any(word in low for word in WORDS.get(kind, ()))
 
 
 def _fits(unit: str, sensor: Sensor) -> bool:

@@ -87,6 +87,19 @@ def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
     assert found.as_dict()["sensors"]["T_input"]["role"] == "given"
 
 
+def test_a_second_probe_of_the_housing_is_no_other_body(tmp_path: Path) -> None:
+    head = "n1 [1/min];M2 [Nm];T_Öl_1 [°C];T_Geh_oben [°C];T_Geh_unten [°C];Raum [°C]"
+    (path := tmp_path / "feld.csv").write_text("\n".join([head, "600;150;30;29;28;20"]), encoding="utf-8")
+    found = gh.card("helical_two_stage", path)
+    assert {column: found.reads[name] for name, column in found.columns.items() if "." in found.reads[name]} == {
+        "n1 [1/min]": "input.w",
+        "M2 [Nm]": "output.tau",
+        "T_Öl_1 [°C]": "oil.T",
+        "T_Geh_oben [°C]": "wall.T",
+        "Raum [°C]": "room.T",
+    }
+
+
 def test_cells_below_zero_are_no_magnitudes(tmp_path: Path) -> None:
     rows = [f"{100 + 10 * k};-{300 + 20 * k};{50 + 2 * k};20" for k in range(7)]
     (path := tmp_path / "feld.csv").write_text(
