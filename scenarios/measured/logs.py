@@ -5,12 +5,10 @@ from __future__ import annotations
 import csv
 import gzip
 import math
-import re
 import zlib
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 from importlib import import_module
 from itertools import chain, islice
 from pathlib import Path
@@ -29,13 +27,8 @@ from .log_checks import check_log
 from .read import place_sensor
 from .sensors import SI, sensors_of, without_sign
 from .table import Sensed, Sensor
+from .times import NUMBERS, find_times, parse_time
 
-#: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
-TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t", "zeit", "zeitstempel", "datum_uhrzeit")
-#: A date as it is written in Germany.
-_DATE = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
-#: What a column holds that is no calendar's.
-NUMBERS = "numbers"
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
 #: Least step of a log [s].
@@ -155,12 +148,6 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
     values, gross = _remove_outliers(name, values, sensors, stretch, lines)
     warnings = check_log(name, sensors, values, lines, step, scenario)
     return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings)
-
-
-def find_times(header: Iterable[str]) -> list[str]:
-    """The columns of time."""
-    names = {h: (h.strip(), split_unit(h)[0]) for h in header}
-    return [h for h, own in names.items() if not {re.sub("[ /]", "_", n.casefold()) for n in own}.isdisjoint(TIMES)]
 
 
 def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
@@ -309,29 +296,6 @@ def _time(
             f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit}."
         )
     return found, dated
-
-
-def parse_time(cell: Any) -> tuple[float, str]:
-    """A time as a number, and what it is. Raises TypeError, ValueError or OverflowError where it is none."""
-    if not isinstance(cell, datetime) and _is_number(cell):
-        if not math.isfinite(number := float(cell)):
-            raise ValueError
-        return number, NUMBERS
-    text = _DATE.sub(r"\3-\2-\1", str(cell).strip())
-    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(text)
-    if stamp.tzinfo:
-        return stamp.timestamp(), "times with a zone"
-    return stamp.replace(tzinfo=UTC).timestamp(), "times without a zone"
-
-
-def _is_number(cell: Any) -> bool:
-    if isinstance(cell, str) and cell[4:5] == cell[7:8] == "-":  # a date
-        return False
-    try:
-        float(cell)
-    except (TypeError, ValueError):
-        return False
-    return True
 
 
 def _stretches(

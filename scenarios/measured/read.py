@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.errors import Problems, suggestion
+from ...model.errors import DataError, Problems, suggestion
 from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
@@ -35,6 +35,7 @@ from .sensors import (
     without_sign,
 )
 from .table import Campaign, Sensor
+from .times import logged_step
 
 #: Share of the tests that must have run alike, for one that lacks a row to be taken to have run like them.
 USUAL = 0.5
@@ -105,12 +106,18 @@ class _Reader:
     def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
         self.path, self.scenario, self.card, self.points = path, scenario, card, points
         self.header, self.rows = read_cells(path)
+        context = {name: card.columns.get(name, name) for name in CONTEXT}
+        self.context = {name: column for name, column in context.items() if column in self.header}
+        held = points or card.protocol.prose == "steady" or not self.context.keys().isdisjoint(("test", "dwell_min"))
+        if not held and (step := logged_step(self.header, [row for _, row in self.rows])):
+            raise DataError(
+                f"{path.name}: is a log, with a row each {step:g} s. Give it by --logs, and as a table the points that"
+                ' were held; or say that all rows are of steady states: protocol = "steady" in the card.'
+            )
         declared = sensors_of(scenario, card)
         self.sensors, self.problems = place_sensor(declared, self.header, card, path.name)
-        context = {name: card.columns.get(name, name) for name in CONTEXT}
         if not points:
             self.problems += misnamed(scenario, card, declared, self.header, path.name)
-        self.context = {name: column for name, column in context.items() if column in self.header}
         if not (points or any(s.role == "read" for s in self.sensors)):
             names = ", ".join(s.column or s.name for s in declared if s.role == "read")
             self.problems.append(f"{path.name} line 1: there is nothing to compare. Add at least one of: {names}.")

@@ -17,10 +17,10 @@ from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card
-from .logs import find_times
 from .read import place_sensor
 from .sensors import DIRECTIONS, SI, floats, sensors_of
 from .table import PLACES, Campaign, Course, Series
+from .times import find_times
 
 #: Shares of the logged time where the pieces of a curve meet, which are cubic.
 KNOTS = (0.04, 0.12, 0.3, 0.55)

@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ...model.errors import DataError
-from ...scenarios.measured.logs import find_times
+from ...scenarios.measured.times import find_times
 from .sources import MACHINE, POLL, Row
 
 #: Beginnings of addresses, and the port of each.

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...scenarios.measured.logs import NUMBERS, Log, log_of
+from ...scenarios.measured.logs import Log, log_of
+from ...scenarios.measured.times import NUMBERS
 from ..diagnose.answer import channels
 from ..diagnose.answer.findings import Cause
 from ..diagnose.infer.logs import Fleet, fleet, question

@@ -13,8 +13,9 @@ import numpy as np
 
 from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
-from ...scenarios.measured.logs import NUMBERS, find_times, parse_number, parse_time
+from ...scenarios.measured.logs import parse_number
 from ...scenarios.measured.table import Sensor
+from ...scenarios.measured.times import NUMBERS, find_times, parse_time
 from ..diagnose.request import Request
 from .sources import Row, Source
 from .store import Cells, Machine, Store

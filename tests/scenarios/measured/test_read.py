@@ -161,3 +161,14 @@ def test_every_rig_has_sensors_that_its_own_tables_pass(rig, rig_name, tmp_path)
     path = written(tmp_path / "data.csv", made(rig(rig_name)))
     found = read_campaign(path, rig(rig_name), Card())
     assert found.given and found.read
+
+
+def test_a_log_is_no_table_of_readings(read, helical):
+    n = 10 * len(helical["T_oil_C"])
+    columns = {name: [*column] * 10 for name, column in helical.items()} | {"Zeit [min]": [*range(n)]}
+    columns["T_oil_C"] = [T + 0.01 * k for k, T in enumerate(columns["T_oil_C"])]
+    with pytest.raises(DataError, match="is a log, with a row each 60 s"):
+        read("helical_two_stage", columns)
+    assert read("helical_two_stage", columns, 'protocol = "steady"').n == n
+    assert read("helical_two_stage", columns | {"test": [*range(n)]}).n == n
+    assert read("helical_two_stage", columns | {"Zeit [min]": [60 * k for k in range(n)]}).n == n
