@@ -126,7 +126,7 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
         kind = kind and _speaks(f"{sensor.name} {part}".casefold(), sensor.kind)
     mark = KIND * kind + PART * (part in low)
     if part in scenario.spec.of_type(ShaftEnd.__name__):
-        words_alone = set(re.findall(r"[^\W\d_]+|\d+", low))
+        words_alone = set(re.findall(r"[^\W\d_]+|\d+", re.sub(r"\sin\s\S+$", "", low)))  # "torque in Nm"
         said = {
             end for end, words in ENDS.items() if any(w in low if len(w) > SHORT else w in words_alone for w in words)
         }

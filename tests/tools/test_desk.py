@@ -100,6 +100,13 @@ def test_a_second_probe_of_the_housing_is_no_other_body(tmp_path: Path) -> None:
     }
 
 
+def test_a_unit_behind_in_is_no_end_of_a_shaft(tmp_path: Path) -> None:
+    head = "Speed in rpm;Torque in Nm;Oil temperature in degC;Room temperature in degC"
+    (path := tmp_path / "feld.csv").write_text("\n".join([head, "600;150;30;20"]), encoding="utf-8")
+    found = gh.card("helical_two_stage", path)
+    assert found.columns["n_input"] == "Speed in rpm" and found.columns["T_output"] == "Torque in Nm"
+
+
 def test_cells_below_zero_are_no_magnitudes(tmp_path: Path) -> None:
     rows = [f"{100 + 10 * k};-{300 + 20 * k};{50 + 2 * k};20" for k in range(7)]
     (path := tmp_path / "feld.csv").write_text(
