@@ -142,10 +142,10 @@ def header_problems(name: str, header: Sequence[str]) -> list[str]:
 
 def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
     text = read_text(path, "CSV", DataError, ENCODINGS)
-    written = visible(text.replace("\x00", "\ufffd")).splitlines()
-    head = next((line for line in written if line.strip() and not line.startswith("#")), "")
-    sign = max(SEPARATORS, key=head.count)
-    reader = csv.reader([head] if head_only else written, delimiter=sign)
+    shown = visible(text.replace("\x00", "\ufffd")).splitlines()
+    head = next((line for line in shown if line.strip() and not line.startswith("#")), "")
+    sign = _separator(head)
+    reader = csv.reader([head] if head_only else shown, delimiter=sign)
     try:
         rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
@@ -164,8 +164,13 @@ def written(head: bytes) -> tuple[str, str]:
     """
     for encoding in ENCODINGS:
         with suppress(UnicodeDecodeError):
-            return encoding, max(SEPARATORS, key=head.decode(encoding).count)
+            return encoding, _separator(head.decode(encoding))
     return ENCODINGS[0], SEPARATORS[0]
+
+
+def _separator(head: str) -> str:
+    """What separates columns, by their names: what stands there most often, a comma where nothing does."""
+    return max(SEPARATORS, key=head.count)
 
 
 def plain(cells: Sequence[str], sign: str) -> list[str]:

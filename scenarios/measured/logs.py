@@ -6,7 +6,6 @@ import csv
 import gzip
 import math
 import zlib
-from collections import Counter
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -18,8 +17,7 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ..csv_table import header_problems, in_si, plain, raise_all, split_unit, two_readings, written
-from ..duty import LATEST, YEAR
+from ..csv_table import header_problems, in_si, plain, raise_all, two_readings, written
 from ..scenario import Scenario
 from .card import Card
 from .checks import COLDEST, HOTTEST
@@ -27,7 +25,7 @@ from .log_checks import check_log
 from .read import place_sensor
 from .sensors import SI, sensors_of, without_sign
 from .table import Sensed, Sensor
-from .times import NUMBERS, find_times, parse_time
+from .times import find_times, seconds
 
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
@@ -140,7 +138,7 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
         DataError: everything wrong with them, at once
     """
     (sensors, time_column), problems = _columns(list(cells), scenario, card, name), Problems()
-    time, dated = _time(cells.pop(time_column), time_column, name, lines, problems)
+    time, dated = seconds(cells.pop(time_column), time_column, name, lines, problems)
     values = {s.name: _values(cells[s.column], s, name, lines, problems) for s in sensors}
     raise_all(problems, name)
     sensors, values = without_sign(scenario, sensors, values)
@@ -267,35 +265,6 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     with problems:
         found = in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
     return found
-
-
-def _time(
-    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: Problems
-) -> tuple[np.ndarray, bool]:
-    """Time [s] (n,), and whether it is a calendar's."""
-    unit = split_unit(column)[1] or "s"
-    found, kinds = np.full(len(cells), np.nan), Counter[str]()
-    if isinstance(cells, np.ndarray) and np.isfinite(cells).all():
-        found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
-    for k, cell in enumerate(cells):
-        try:
-            found[k], kind = parse_time(cell)
-            kinds[kind] += 1
-        except (TypeError, ValueError, OverflowError):
-            problems.append(
-                f'{name} line {lines[k]}: {column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'
-            )
-    if len(kinds) > 1:
-        said = " and ".join(f"{count} {kind}" for kind, count in kinds.items())
-        problems.append(f"{name}: {column} holds {said}. Write all of them alike.")
-    dated = NUMBERS not in kinds
-    with problems:
-        found = found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))
-    if np.nanmax(np.abs(found), initial=0.0) > LATEST:
-        problems.append(
-            f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit}."
-        )
-    return found, dated
 
 
 def _stretches(

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 
-from ...model.errors import GearheatError
+from ...model.errors import Problems
 from ..csv_table import in_si, split_unit
+from ..duty import LATEST, YEAR
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t", "zeit", "zeitstempel", "datum_uhrzeit")
@@ -55,6 +57,43 @@ def _is_number(cell: Any) -> bool:
     return True
 
 
+def seconds(
+    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: Problems
+) -> tuple[np.ndarray, bool]:
+    """Time [s] (n,), and whether it is a calendar's.
+
+    Args:
+        cells: of the column (n,)
+        column: its name
+        name: of the file
+        lines: of the cells in it (n,)
+        problems: take what is wrong with them
+    """
+    unit = split_unit(column)[1] or "s"
+    found, kinds = np.full(len(cells), np.nan), Counter[str]()
+    if isinstance(cells, np.ndarray) and np.isfinite(cells).all():
+        found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
+    for k, cell in enumerate(cells):
+        try:
+            found[k], kind = parse_time(cell)
+            kinds[kind] += 1
+        except (TypeError, ValueError, OverflowError):
+            problems.append(
+                f'{name} line {lines[k]}: {column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'
+            )
+    if len(kinds) > 1:
+        said = " and ".join(f"{count} {kind}" for kind, count in kinds.items())
+        problems.append(f"{name}: {column} holds {said}. Write all of them alike.")
+    dated = NUMBERS not in kinds
+    with problems:
+        found = found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))
+    if np.nanmax(np.abs(found), initial=0.0) > LATEST:
+        problems.append(
+            f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit}."
+        )
+    return found, dated
+
+
 def logged_step(header: Sequence[str], rows: Sequence[Sequence[str]]) -> float | None:
     """Step of a table that is a log [s], None where it is none: rows at even, short steps, far too short for rest.
 
@@ -65,13 +104,11 @@ def logged_step(header: Sequence[str], rows: Sequence[Sequence[str]]) -> float |
     times = find_times(header)
     if len(times) != 1 or len(rows) < LOGGED_ROWS:
         return None
-    place = header.index(times[0])
-    try:
-        told = [parse_time(row[place]) for row in rows]
-        unit = "s" if told[0][1] != NUMBERS else split_unit(times[0])[1] or "s"
-        steps = np.diff(in_si(np.array([time for time, _ in told]), unit, "s", name=times[0]))
-    except (GearheatError, TypeError, ValueError, OverflowError):
+    problems, place = Problems(), header.index(times[0])
+    time, _ = seconds([row[place] for row in rows], times[0], "", np.arange(len(rows)), problems)
+    if problems:
         return None
+    steps = np.diff(time)
     step = float(np.median(steps))
     even = float(np.mean(np.abs(steps - step) <= (1 - EVEN) * step))
     return step if 0 < step <= LOGGED_STEP and even >= EVEN else None

@@ -64,15 +64,11 @@ def test_a_window_is_answered_with_all_that_has_come(sensors: tuple[Sensor, ...]
 
 
 def test_a_german_stream_says_the_same(sensors: tuple[Sensor, ...]) -> None:
-    lines = [HEAD, *map(line, range(16))]
-    german = [row.replace(",", ";").replace(".", ",") for row in lines]
-    found = []
-    for rows in (lines, german):
-        store = Store(None, "")
-        for _ in events(sensors, Stream(io.BytesIO("\n".join(rows).encode()), "one"), store):
-            pass
-        found.append(said(store))
-    assert found[0] and found[0] == found[1]
+    lines, store = [*map(line, range(16))], Store(None, "")
+    german = "\n".join((HEAD, *lines)).replace(",", ";").replace(".", ",").encode()
+    for _ in events(sensors, Stream(io.BytesIO(german), "one"), store):
+        pass
+    assert said(store) and said(store) == streamed(sensors, *lines)
 
 
 def test_times_without_a_calendar_are_seconds(tmp_path: Path) -> None:

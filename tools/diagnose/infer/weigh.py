@@ -151,10 +151,8 @@ class Weighing:
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else self.screened(near, self.problem)
-                share = SHARE if near is self.null else 1.0
-                alone = self._promising(look, set(), ALONE[k], self.options.wanted, share) if k < len(ALONE) else ()
-                for start, logs in alone:
-                    self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
+                if k < len(ALONE):
+                    self._fit_alone(near, look, ALONE[k])
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
@@ -208,6 +206,11 @@ class Weighing:
             beside = tuple((k, sizes[t.label]) for k, t in enumerate(terms) if t.scatters and t.label in sizes)
             starts = [Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
+
+    def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
+        """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
+        for start, logs in self._promising(look, set(), n, self.options.wanted, SHARE if near is self.null else 1.0):
+            self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
 
     def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
         """Fits a cause joined to what acts in a fit, beside what scatters."""

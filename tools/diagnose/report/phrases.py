@@ -14,7 +14,6 @@ from ..library.entries import TABLE
 #: Mean deviation from the rig as filed that is told: this [K], and so many tolerances of the thermometer.
 FELT = 1.0
 TOLERANCES = 3.0
-
 #: Parts of a value are named where they are not more than these.
 FEW_PARTS = 3
 #: Share by which one error must exceed another to be worse.
