@@ -337,6 +337,18 @@ def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
     return one - zero, zero
 
 
+def is_of(unit: str, si: str) -> bool:
+    """Whether a unit is one of what an SI unit measures.
+
+    Args:
+        unit: of a column
+        si: as "W"
+    """
+    with suppress(ScenarioError):
+        return bool(scale(unit, si, name=""))
+    return False
+
+
 def in_si(values: np.ndarray, unit: str, si: str, *, name: str) -> np.ndarray:
     """Values of a column in SI (n,).
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...model.errors import DataError, Problems, suggestion
 from ...model.files import tables
 from ...model.parts.shaft import ShaftEnd
-from ..csv_table import numbers, read_cells, scale, split_unit
+from ..csv_table import is_of, numbers, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card, CardSensor
 from .nominal import Nominal
@@ -73,16 +73,10 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
     known = {name: column for name, column in columns.items() if column}
     known |= _context({name: column for name, column in cells.items() if name not in known.values()}, columns)
     wanted = wanted_sensors(scenario)
-    marks = [
-        (mark, -place, name, column)
-        for place, (name, sensor) in enumerate(wanted.items())
-        for column in header
-        if name not in known and column not in known.values()
-        if (mark := _mark(column, sensor, scenario, wanted)) > 0
-    ]
-    for _, _, name, column in sorted(marks, key=lambda mark: mark[:2], reverse=True):
-        if name not in known and column not in known.values():
-            known[name] = column
+    _match(known, wanted, header, scenario)
+    if any(s.kind == "torque" and s.role == "given" and name not in known for name, s in wanted.items()):
+        powers = [h for h in header if is_of(said.units.get(h, split_unit(h)[1]), "W")]
+        _match(known, _by_power(wanted, scenario), powers, scenario)
     known = {name: column for name, column in known.items() if columns.get(name) != ""}
     units = _units(known, wanted) | dict(said.units)
     card = Card(columns=known, units=units, sensors=_driving(known, wanted), name=path.name)
@@ -111,6 +105,27 @@ def _context(cells: Mapping[str, Sequence[str]], columns: Mapping[str, str]) -> 
         if meant and not (name == "oil" and numbers(cells[meant[0]]) is not None):
             found[name] = meant[0]
     return found
+
+
+def _match(known: dict[str, str], wanted: Mapping[str, Sensor], header: Sequence[str], scenario: Scenario) -> None:
+    """Adds to what is known the columns that fit the wanted sensors, the best ones first."""
+    marks = [
+        (mark, -place, name, column)
+        for place, (name, sensor) in enumerate(wanted.items())
+        for column in header
+        if name not in known and column not in known.values()
+        if (mark := _mark(column, sensor, scenario, wanted)) > 0
+    ]
+    for _, _, name, column in sorted(marks, key=lambda mark: mark[:2], reverse=True):
+        if name not in known and column not in known.values():
+            known[name] = column
+
+
+def _by_power(wanted: Mapping[str, Sensor], scenario: Scenario) -> dict[str, Sensor]:
+    """Torques whose place a power may take: first where power enters, whose name plate says it."""
+    found = {n: replace(s, kind="power", role="given") for n, s in wanted.items() if s.kind == "torque"}
+    ends = {n: _end(scenario, s.reads.partition(".")[0]) for n, s in found.items()}
+    return {n: found[n] for n in sorted(found, key=lambda n: ends[n] != "input")}
 
 
 def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, Sensor]) -> int:
@@ -143,10 +158,7 @@ def _speaks(low: str, kind: str) -> bool:
 
 
 def _fits(unit: str, sensor: Sensor) -> bool:
-    problems = Problems()
-    with problems:
-        scale(unit, SI[sensor.kind], name=sensor.column)
-    return not problems
+    return is_of(unit, SI[sensor.kind])
 
 
 def _end(scenario: Scenario, part: str) -> str:

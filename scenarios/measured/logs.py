@@ -23,7 +23,8 @@ from .card import Card
 from .checks import COLDEST, HOTTEST
 from .log_checks import check_log
 from .read import place_sensor
-from .sensors import SI, sensors_of, without_sign
+from .sensors import SI, sensors_of, si_of
+from .shafts import torques
 from .table import Sensed, Sensor
 from .times import find_times, seconds
 
@@ -141,7 +142,7 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
     time, dated = seconds(cells.pop(time_column), time_column, name, lines, problems)
     values = {s.name: _values(cells[s.column], s, name, lines, problems) for s in sensors}
     raise_all(problems, name)
-    sensors, values = without_sign(scenario, sensors, values)
+    sensors, values = torques(scenario, sensors, values, name)
     stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
     values, gross = _remove_outliers(name, values, sensors, stretch, lines)
     warnings = check_log(name, sensors, values, lines, step, scenario)
@@ -263,7 +264,7 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     if not np.isfinite(found).any():
         problems.append(f"{name}: column {sensor.column} holds no number. Give what was read, or take it out.")
     with problems:
-        found = in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
+        found = in_si(found, sensor.unit, si_of(sensor), name=f"{name} {sensor.column}")
     return found
 
 

@@ -26,14 +26,14 @@ from .nominal import Nominal, drive_by, unmeasured
 from .sensors import (
     CONTEXT,
     DIRECTIONS,
-    SI,
     Cells,
     contradictions,
     floats,
     order_warnings,
     sensors_of,
-    without_sign,
+    si_of,
 )
+from .shafts import torques
 from .table import Campaign, Sensor
 from .times import logged_step
 
@@ -137,7 +137,7 @@ class _Reader:
         self.problems += oil_problems(self.path.name, oils, self.card)
         raise_all(self.problems, self.path.name)
         values = {s.name: self._values(table, s) for s in self.sensors}
-        self.sensors, values = without_sign(self.scenario, self.sensors, values)
+        self.sensors, values = torques(self.scenario, self.sensors, values, self.path.name)
         minutes = {name: self._si(cells, name) for name, (_, _, si, _, _) in CONTEXT.items() if si}
         self._check_context(cells, minutes)
         raise_all(self.problems, self.path.name)
@@ -164,7 +164,7 @@ class _Reader:
         """What a sensor shows (n,) in SI."""
         cells = floats(table.columns[sensor.column])
         with self.problems:
-            cells = in_si(cells, sensor.unit, SI[sensor.kind], name=f"{self.path.name} {sensor.column}")
+            cells = in_si(cells, sensor.unit, si_of(sensor), name=f"{self.path.name} {sensor.column}")
         return cells
 
     def _si(self, cells: Cells, name: str) -> np.ndarray:

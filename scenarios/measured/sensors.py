@@ -20,7 +20,7 @@ from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spell_unit, text, to_si
-from ..csv_table import Table, split_unit
+from ..csv_table import Table, is_of, split_unit
 from ..nuisances import DEFAULT_SD
 from ..scenario import Instrument, Scenario
 from ..values import deviation
@@ -271,15 +271,15 @@ class _Sensors:
         return spell_unit(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))
 
     def _completed(self, instrument: Instrument) -> Sensor:
-        kind = instrument.kind or self._kind(instrument)
-        repeat, offset = self._default_accuracy(instrument, kind)
+        kind, unit = instrument.kind or self._kind(instrument), self._unit(instrument)
+        repeat, offset = self._default_accuracy(instrument, "power" if of_power(kind, unit) else kind)
         return Sensor(
             name=instrument.name,
             column=instrument.column,
             reads=instrument.reads,
             kind=kind,
             role=instrument.role or ("given" if instrument.reads in self.driven else "read"),
-            unit=self._unit(instrument),
+            unit=unit,
             repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
             offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
             signs=self._signs(instrument, kind),
@@ -322,29 +322,24 @@ class _Sensors:
         return sign, -sign if kind in ("torque", "current") else sign
 
 
+def of_power(kind: str, unit: str) -> bool:
+    """Whether a column gives a torque by the power of its shaft end.
+
+    Args:
+        kind: of its sensor
+        unit: of the column
+    """
+    return kind == "torque" and is_of(unit, "W")
+
+
+def si_of(sensor: Sensor) -> str:
+    """SI unit of what a sensor's column holds."""
+    return "W" if of_power(sensor.kind, sensor.unit) else SI[sensor.kind]
+
+
 def _round(value: float, unit: str) -> float:
     """A value with two digits in the unit that a person reads."""
     return to_si(text(value, unit, 2), unit)
-
-
-def without_sign(
-    scenario: Scenario, sensors: Sequence[Sensor], values: dict[str, np.ndarray]
-) -> tuple[tuple[Sensor, ...], dict[str, np.ndarray]]:
-    """Sensors and values (n,), given torques of one sign as magnitudes where the rig says at which end power enters.
-
-    Args:
-        scenario: the rig
-        sensors: of the table
-        values: sensor -> column in SI
-    """
-    columns = {s.name: values[s.name] for s in sensors if s.role == "given" and s.kind == "torque"}
-    loads = [name for name, column in columns.items() if not ((column < 0).any() and (column > 0).any())]
-    if not (scenario.drives and loads):
-        return tuple(sensors), values
-    usual = Nominal(scenario)
-    ways = {s.name: -1.0 if usual.value(s.reads) < 0 else 1.0 for s in sensors if s.name in loads}
-    signed = (replace(s, signs=(ways[s.name], -ways[s.name])) if s.name in ways else s for s in sensors)
-    return tuple(signed), values | {name: np.abs(columns[name]) for name in ways}
 
 
 def instrument_of(path: str) -> Instrument:

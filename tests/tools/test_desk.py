@@ -87,6 +87,17 @@ def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
     assert found.as_dict()["sensors"]["T_input"]["role"] == "given"
 
 
+def test_a_power_drives_where_no_torque_does(tmp_path: Path) -> None:
+    states = [gh.steady("helical_two_stage", set={"input.w": f"{600 + 100 * k} rpm"}) for k in range(6)]
+    rows = [f"{600 + 100 * k};{s['input.P'] / 1e3:.4f};{s.to('oil.T', 'degC'):.3f};20" for k, s in enumerate(states)]
+    (path := tmp_path / "feld.csv").write_text("\n".join(["Drehzahl [1/min];Leistung [kW];Öl;Halle", *rows]))
+    card = gh.card("helical_two_stage", path)
+    assert not card.problems and card.columns["input.tau"] == "Leistung [kW]"
+    study = read_study(scenario_of("helical_two_stage"), path, card.save(tmp_path / "card.toml"))
+    assert study
+    assert [study.given(k)["input.tau"] for k in range(6)] == pytest.approx([s["input.tau"] for s in states], rel=1e-3)
+
+
 def test_a_second_probe_of_the_housing_is_no_other_body(tmp_path: Path) -> None:
     head = "n1 [1/min];M2 [Nm];T_Öl_1 [°C];T_Geh_oben [°C];T_Geh_unten [°C];Raum [°C]"
     (path := tmp_path / "feld.csv").write_text("\n".join([head, "600;150;30;29;28;20"]), encoding="utf-8")

@@ -85,6 +85,15 @@ def test_a_single_spike_is_set_aside_by_line_and_column(tmp_path: Path) -> None:
     assert np.isnan(log.values["T_sump"][20])
 
 
+def test_a_power_gives_the_torque_and_at_rest_hardly_any(tmp_path: Path) -> None:
+    rows = [row.replace(",3000,", ",471.2389,") for row in lines()]
+    rows[40] = rows[40].replace(",1500,471.2389,", ",0,0.5,")
+    (tmp_path / "card.toml").write_text('columns.T_hss = "P [kW]"')
+    log = read(tmp_path / "a.csv", rows, HEAD.replace("T_hss_Nm", "P [kW]"), read_card(tmp_path / "card.toml"))
+    assert log.values["T_hss"][[0, 59]] == pytest.approx([3000.0, 3000.0])
+    assert log.values["T_hss"][40] == pytest.approx(0.5 / 471.2389 * 3000 / 0.01, rel=0.2)
+
+
 def test_own_names_and_units_by_the_card(tmp_path: Path) -> None:
     card = Card(columns={"T_sump": "Sumpf"}, units={"Sumpf": "degC"})
     log = read(tmp_path / "a.csv", lines(), HEAD.replace("T_sump_C", "Sumpf"), card)

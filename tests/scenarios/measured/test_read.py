@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.card import Card, read_card
+from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.read import read_campaign
+from gearheat.scenarios.measured.shafts import torques
+from gearheat.scenarios.measured.table import Sensor
 from gearheat.scenarios.shipped import RIGS
 from made_tables import made, written
 
@@ -51,6 +54,30 @@ def test_own_column_names_units_and_decimal_commas(rig, helical, tmp_path):
     for name in ("T_oil", "T_wall", "T_amb"):
         assert found.values[name] == pytest.approx(np.array(helical[f"{name}_C"]) + 273.15, abs=2e-3), name
     assert found.steady and found.n_tests == found.n == 6 and not found.direction.any()
+
+
+@pytest.mark.parametrize(("end", "sign"), [("input", 1.0), ("output", -1.0)])
+@pytest.mark.parametrize("turned", [1.0, -1.0])
+def test_a_power_and_a_speed_give_the_torque_at_their_end(rig, read, helical, end, sign, turned):
+    turns, speed = np.array([1, 1, 1, 1, 1, turned]), np.array(helical["n_input_rpm"]) * np.pi / 30
+    torque = sign * np.array([100.0, 200, 100, 200, 100, 200])
+    power = np.abs(torque * speed * Nominal(rig("helical_two_stage")).ratios[end]) / 1e3
+    columns = helical | {"n_input_rpm": helical["n_input_rpm"] * turns, f"P_{end} [kW]": power}
+    del columns["T_output_Nm"]
+    card = {
+        "input": 'sensors."P_input [kW]" = { reads = "input.tau", role = "given" }\nsensors.T_output.role = "read"',
+        "output": 'columns.T_output = "P_output [kW]"\nsensors.T_output.magnitude = true',
+    }[end]
+    found = read("helical_two_stage", columns, card)
+    given = next(s for s in found.given if s.kind == "torque")
+    assert found.values[given.name] * given.signs[0] == pytest.approx(torque * turns, rel=1e-9)
+    assert given.unit == "kW"
+
+
+def test_a_power_without_a_speed_is_refused(rig):
+    power = Sensor("T_input", "P [kW]", "input.tau", "torque", "given", "kW", 0.1, 0.1)
+    with pytest.raises(DataError, match="is a power, and no column says the speed of input"):
+        torques(rig("helical_two_stage"), [power], {"T_input": np.array([3e3])}, "data.csv")
 
 
 def test_a_path_of_the_model_becomes_a_sensor(read, helical):
