@@ -33,6 +33,14 @@ PROBE_ERROR = 5.0
 AT_REST = 0.01
 #: Rows that are held against the nominal model.
 SAMPLED = 6
+#: In a table of so many rows the largest jumps of what drives show whether the points were held,
+HELD_ROWS = 50
+JUMPS = 12
+#: where the model's temperatures jump by this [K] on average, and the readings by this share of it.
+JUMP_K = 1.5
+FOLLOWED = 0.3
+#: Readings that change from row to row by this share of what they do at random come one from another.
+CREEPING = 0.3
 #: A temperature this much further over the room than the model's, at most by `RISE_FACTOR`, may be in degF,
 SLIP_FACTOR = 1.6
 #: where it is nearer than this factor in degF.
@@ -71,10 +79,7 @@ def against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[
     """
     turning = np.flatnonzero(_turns(campaign, nominal))
     rows = np.unique(turning[np.linspace(0, len(turning) - 1, min(SAMPLED, len(turning))).round().astype(int)])
-    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
-    inputs = {row: {path: float(values[row]) for path, values in given.items()} for row in rows}
-    states = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **inputs[row]}) for row in rows}
-    found = {int(row): state for row, state in states.items() if state is not None}
+    found = _states(campaign, nominal, oils, rows)
     for sensor in campaign.read if found else ():
         measured = campaign.values[sensor.name] * sensor.sign(campaign.direction)
         pairs = {
@@ -88,6 +93,51 @@ def against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[
             yield from _torque(campaign, nominal, sensor, pairs)
         elif pairs and sensor.kind.endswith("_temp"):
             yield from _rise(campaign, sensor, pairs)
+
+
+def unheld(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[str]:
+    """Rows in which nothing follows what drives the machine: samples of a log, whose steps nothing says.
+
+    Args:
+        campaign: what was measured, each row a test of its own
+        nominal: its rig
+        oils: name of each of its oils -> values by path
+    """
+    if campaign.n < HELD_ROWS:
+        return
+    jumps = np.zeros(campaign.n - 1)
+    for sensor in campaign.given:
+        values = np.abs(campaign.values[sensor.name])
+        jumps = np.fmax(jumps, np.abs(np.diff(values)) / max(np.nanmax(values), 1e-9))
+    after = np.sort(np.argsort(-jumps, kind="stable")[:JUMPS]) + 1
+    states = _states(campaign, nominal, oils, np.unique([after - 1, after]))
+    pairs = [(k - 1, k) for k in after.tolist() if {k - 1, k} <= states.keys()]
+    found: dict[str, tuple[bool, float, float]] = {}
+    for sensor in (s for s in campaign.read if SI[s.kind] == "K"):
+        read = np.array([np.diff(campaign.values[sensor.name][list(pair)])[0] for pair in pairs])
+        model = np.array([states[k][sensor.reads] - states[j][sensor.reads] for j, k in pairs])
+        if np.isfinite(read).all() and pairs and np.mean(np.abs(model)) > JUMP_K:
+            values, usual = campaign.values[sensor.name], float(np.mean(np.abs(model)))
+            creeping = np.nanmean(np.diff(values) ** 2) < CREEPING * 2.0 * np.nanvar(values)
+            warming = np.nanmax(values) - np.nanmin(values) > usual  # a probe of the room does not
+            behind = bool(creeping and warming and read @ model < FOLLOWED * (model @ model))
+            found[sensor.column] = (behind, float(np.mean(np.abs(read))), usual)
+    if found and all(behind for behind, _, _ in found.values()):
+        column, (_, moved, usual) = next(iter(found.items()))
+        yield (
+            f"{campaign.name} seems to be a log: at the largest jumps of what drives it {column} moves by {moved:.2g} K"
+            f" from row to row, the steady state by {usual:.2g} K. Give it by --logs with a column of time, and as a"
+            ' table the points that were held; or say that all rows are of steady states: protocol = "steady" in the'
+            " card."
+        )
+
+
+def _states(campaign: Campaign, nominal: Nominal, oils: Oils, rows: np.ndarray) -> dict[int, Mapping[str, float]]:
+    """Row -> values by path of the nominal model's steady state there, where it has one."""
+    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
+    inputs = {int(row): {path: float(values[row]) for path, values in given.items()} for row in rows}
+    found = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **own}) for row, own in inputs.items()}
+    return {row: state for row, state in found.items() if state is not None}
 
 
 def _turns(campaign: Campaign, nominal: Nominal) -> np.ndarray:

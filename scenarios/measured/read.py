@@ -18,6 +18,7 @@ from ...model.errors import DataError, Problems, suggestion
 from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
+from .against_model import unheld
 from .card import Card
 from .card_names import misnamed
 from .checks import check
@@ -108,8 +109,10 @@ class _Reader:
         self.header, self.rows = read_cells(path)
         context = {name: card.columns.get(name, name) for name in CONTEXT}
         self.context = {name: column for name, column in context.items() if column in self.header}
-        held = points or card.protocol.prose == "steady" or not self.context.keys().isdisjoint(("test", "dwell_min"))
-        if not held and (step := logged_step(self.header, [row for _, row in self.rows])):
+        self.held = (
+            points or card.protocol.prose == "steady" or not self.context.keys().isdisjoint(("test", "dwell_min"))
+        )
+        if not self.held and (step := logged_step(self.header, [row for _, row in self.rows])):
             raise DataError(
                 f"{path.name}: is a log, with a row each {step:g} s. Give it by --logs, and as a table the points that"
                 ' were held; or say that all rows are of steady states: protocol = "steady" in the card.'
@@ -145,6 +148,8 @@ class _Reader:
         nominal = Nominal(drive_by(self.scenario, self.sensors))
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
         own = (*oil_warnings(self.scenario, found.oil, self.card), *unmeasured(nominal, found.name, self.sensors))
+        if not self.held:
+            raise_all([*unheld(found, nominal, known)], found.name)
         warned = replace(found, warnings=(*found.warnings, *own))
         return _with_unread(check(warned, nominal, known, points=self.points))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError
@@ -78,6 +80,17 @@ def test_a_power_without_a_speed_is_refused(rig):
     power = Sensor("T_input", "P [kW]", "input.tau", "torque", "given", "kW", 0.1, 0.1)
     with pytest.raises(DataError, match="is a power, and no column says the speed of input"):
         torques(rig("helical_two_stage"), [power], {"T_input": np.array([3e3])}, "data.csv")
+
+
+@pytest.mark.parametrize(("lag", "card", "refused"), [(0.0, "", 0), (0.9, "", 1), (0.9, 'protocol = "steady"', 0)])
+def test_samples_of_a_log_are_no_readings(read, helical, lag, card, refused):
+    place = np.repeat(np.random.default_rng(1).integers(0, 6, 20), 12)
+    columns = {name: np.array(values)[place] for name, values in helical.items()}
+    for name in ("T_oil_C", "T_wall_C"):
+        for k in range(1, len(place)):
+            columns[name][k] += lag * (columns[name][k - 1] - columns[name][k])
+    with pytest.raises(DataError, match="seems to be a log") if refused else nullcontext():
+        read("helical_two_stage", columns, card)
 
 
 def test_a_path_of_the_model_becomes_a_sensor(read, helical):
