@@ -5,7 +5,9 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import gearheat as gh
 import numpy as np
+import pytest
 from challenge.cases import Drawn, make_case
 from challenge.model_rig import draw_steady
 from gearheat.tools.cli.app import app
@@ -74,3 +76,19 @@ def test_a_foot_that_conducts_more_is_told_by_both(tmp_path: Path) -> None:
     assert p < 0.6 < 0.8 < q
     assert both["about"]["logs"] == ["now.csv", "past.csv"] and both["about"]["log_rows"] == 2 * N
     assert any(text.startswith("the logs alone") and "heat into the foundation" in text for text in both["warnings"])
+
+
+@pytest.mark.parametrize(("tolerance", "off"), [("0.5 N.m", True), ("100 N.m", False)])
+def test_a_rig_is_off_as_filed_beyond_what_its_instruments_may_err(tmp_path: Path, tolerance: str, off: bool) -> None:
+    rng, rows = np.random.default_rng(4), []
+    for speed in (700.0, 1000.0, 1300.0, 1450.0):
+        for load in (250.0, 350.0, 450.0, 550.0):  # which is more than is read
+            s = gh.steady("helical_two_stage", set={"input.w": f"{speed} rpm", "output.tau": f"{-1.3 * load} N.m"})
+            rows.append([speed, load, *(s.to(T, "degC") + rng.normal(0.0, 0.3) for T in ("oil.T", "wall.T")), 20.0])
+    columns = ("n_input_rpm", "T_output_Nm", "T_oil_C", "T_wall_C", "T_amb_C")
+    data = written(tmp_path / "data.csv", dict(zip(columns, np.transpose(rows), strict=True)))
+    (card := tmp_path / "card.toml").write_text(
+        f'sensors.T_output.magnitude = true\nchannels.T_output.offset_sd = "{tolerance}"\n'
+    )
+    found = gh.diagnose(data, "helical_two_stage", card=card, quick=True)
+    assert bool(found.data_quality.as_filed) is off

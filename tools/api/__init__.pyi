@@ -6,6 +6,7 @@ from .scenarios.own_types import use_parts as use_parts
 from .scenarios.ranges import override as override
 from .tools.build.new import NewRig as NewRig, new as new
 from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
+from .tools.compare.card import CardText as CardText, card as card
 from .tools.compare.replay import Replays as Replays, replay as replay
 from .tools.compare.results import Errors as Errors, compare as compare
 from .tools.compare.run import CampaignRun as CampaignRun, run as run
@@ -14,11 +15,9 @@ from .tools.describe.parts import PartTypes as PartTypes, parts as parts, schema
 from .tools.describe.rig import Rig as Rig, assemble as assemble, load as load, rigs as rigs
 from .tools.describe.shipped import Shipped as Shipped, shipped as shipped
 from .tools.diagnose.api import (
-    CardText as CardText,
     Diagnosis as Diagnosis,
     Outputs as Outputs,
     PlanAnswer as PlanAnswer,
-    card as card,
     diagnose as diagnose,
     plan as plan,
 )

@@ -16,6 +16,7 @@ from .answer import channels, compose, findings as f
 from .answer.decide import Decision, decide, temper
 from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
+from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
 from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question
 from .infer.problem import Aside
@@ -297,5 +298,6 @@ def _pictures(
         best = int(np.argmax(np.nansum(before**2 - e**2, axis=0)))  # where most is taken away
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
-    off = {s.name: float(e) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")}
+    errors = [(s, float(e)) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")]
+    off = {s.name: error for s, error in errors if is_apart(error, s.offset_sd)}
     return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off

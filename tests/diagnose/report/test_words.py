@@ -61,8 +61,8 @@ def test_a_rig_that_is_off_as_filed_does_not_simply_agree() -> None:
 
     assert said(36.0).verdict.endswith("once it is calibrated; as filed it is off: T_oil lies 36 K above it.")
     assert "--reference-logs" in said(-1.2).do and "1.2 K below it" in said(-1.2).verdict
-    for agrees in (said(0.8), said(36.0, reference="healthy.csv")):
-        assert (agrees.verdict, agrees.do) == (one.says.verdict, "Nothing needs doing.")
+    agrees = said(36.0, reference="healthy.csv")
+    assert (agrees.verdict, agrees.do) == (one.says.verdict, "Nothing needs doing.")
 
 
 def test_an_explanation_names_its_class_and_its_size_in_degrees_and_watts() -> None:

@@ -93,7 +93,9 @@ class DataQuality(Model):
     adequacy: dict[str, P] = Field(
         default={}, description="channel -> p of what is left in it; near 1 is too good to be true"
     )
-    as_filed: dict[str, Number] = Field(default={}, description="thermometer -> mean of measured less rig as filed [K]")
+    as_filed: dict[str, Number] = Field(
+        default={}, description="thermometer -> mean of measured less rig as filed [K], where it is told"
+    )
 
 
 class ResidualMean(Model):

@@ -25,6 +25,9 @@ from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPo
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.0
+#: Mean deviation from the rig as filed that is told: this [K], and so many tolerances of the instruments.
+FELT = 1.0
+TOLERANCES = 3.0
 #: What residuals are averaged over: one quantity, or two against each other.
 TABLES = (("mounting", "speed"), ("mounting", "direction"), ("load", "speed"), ("oil",), ("running order",))
 #: A quantity has at most this many groups in a table; neighbouring levels are joined beyond.
@@ -151,11 +154,19 @@ def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
 
 
 def errors_as_filed(problem: Problem) -> dict[str, float]:
-    """Thermometer -> mean of measured less simulated by the rig before it is calibrated [K]."""
+    """Thermometer -> mean of measured less simulated by the rig before it is calibrated [K], where it is told."""
     o, sound = problem.data, ~np.isin(np.arange(problem.data.m), problem.entries_aside)
-    left = (problem.measured - problem.look(np.zeros(problem.nz)).shown)[problem.own]
-    own = {s.name: left[sound & (o.kind == i)] for i, s in enumerate(o.read) if s.kind.endswith("_temp")}
-    return {name: float(errors.mean()) for name, errors in own.items() if len(errors)}
+    look = problem.look(np.zeros(problem.nz))
+    left = (problem.measured - look.shown)[problem.own]
+    erred = np.hstack([t.effects for t in problem.scatters(look) if t.name.startswith("tolerance")])[problem.own]
+    own = {s.name: sound & (o.kind == i) for i, s in enumerate(o.read) if s.kind.endswith("_temp")}
+    means = {name: (float(left[k].mean()), np.linalg.norm(erred[k].mean(axis=0))) for name, k in own.items() if k.any()}
+    return {name: mean for name, (mean, sd) in means.items() if is_apart(mean, sd)}
+
+
+def is_apart(mean: float, sd: float | np.floating) -> bool:
+    """Whether a mean deviation from the rig as filed [K] is told, beside what the tolerances of instruments make."""
+    return bool(abs(mean) > max(FELT, TOLERANCES * sd))
 
 
 def list_repeats(campaign: Campaign) -> tuple[RepeatedPoint, ...]:

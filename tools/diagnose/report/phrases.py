@@ -11,9 +11,6 @@ from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
 from ..library.entries import TABLE
 
-#: Mean deviation from the rig as filed that is told: this [K], and so many tolerances of the thermometer.
-FELT = 1.0
-TOLERANCES = 3.0
 #: Parts of a value are named where they are not more than these.
 FEW_PARTS = 3
 #: Share by which one error must exceed another to be worse.
@@ -226,9 +223,7 @@ def calibration(found: Findings, most: int) -> str:
 def as_filed(found: Findings) -> str:
     """Temperatures that lie apart from those of the rig as it is filed, where nothing healthy says otherwise."""
     off = {} if found.about.reference else found.data_quality.as_filed
-    limits = {c.name: max(FELT, TOLERANCES * (c.offset_sd or 0.0)) for c in found.channels}
-    told = {name: mean for name, mean in off.items() if abs(mean) > limits[name]}
-    return ", ".join(f"{n} lies {with_unit(abs(m), 'K')} {'above' if m > 0 else 'below'} it" for n, m in told.items())
+    return ", ".join(f"{n} lies {with_unit(abs(m), 'K')} {'above' if m > 0 else 'below'} it" for n, m in off.items())
 
 
 def gain(found: Gain) -> str:
