@@ -32,6 +32,8 @@ BEST = 1.0
 BEST_OF_ONE = 1.1
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
+#: A torque that is estimated and not measured is known within this share at worst.
+ESTIMATED = 0.35
 #: Conditions to predict further out than this, relative to what was measured, are extrapolations.
 OUTLYING = 0.25
 #: Range of a given quantity, relative to its largest, below which there is but one of it.
@@ -117,13 +119,15 @@ def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Accuracies that no instrument has."""
     for sensor in campaign.sensors:
         usual = dict(zip(("repeat_sd", "offset_sd"), ACCURACY[sensor.kind], strict=True))
-        unit = "K (difference)" if SI[sensor.kind] == "K" else SI[sensor.kind]
+        unit, most = "K (difference)" if SI[sensor.kind] == "K" else SI[sensor.kind], 0.0
         if SI[sensor.kind] != "K":
-            size = abs(nominal.value(sensor.reads))
-            usual = {key: part * (size if size > 0 else _size(campaign, sensor)) for key, part in usual.items()}
+            size = abs(nominal.value(sensor.reads)) or _size(campaign, sensor)
+            usual = {key: part * size for key, part in usual.items()}
+            most = ESTIMATED * size if sensor.kind == "torque" else 0.0
         for key, value in usual.items():
             stated = getattr(sensor, key)
-            if (stated == 0.0 and key == "offset_sd") or value == 0.0 or value / ODD <= stated <= value * ODD:
+            known = value / ODD <= stated <= max(value * ODD, most)
+            if (stated == 0.0 and key == "offset_sd") or value == 0.0 or known:
                 continue
             yield (
                 f"{sensor.name}: {key} = {text(stated, unit, 3)} is no accuracy of such an instrument;"

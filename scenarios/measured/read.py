@@ -93,10 +93,11 @@ def place_sensor(
             unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
             found.append(replace(sensor, column=column, unit=spell_unit(unit)))
         elif sensor.role == "given":
+            about = " If it was not measured, add what is known of it, and how well: channels.{}.offset_sd in the card."
             problems.append(
                 f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
                 f'{suggestion(sensor.column, header)} Add it, or name yours in the card: columns = {{ "{sensor.name}" ='
-                ' "..." }.'
+                f' "..." }}.{about.format(sensor.name) if sensor.kind == "torque" else ""}'
             )
     return tuple(found), problems
 

@@ -93,6 +93,13 @@ def test_samples_of_a_log_are_no_readings(read, helical, lag, card, refused):
         read("helical_two_stage", columns, card)
 
 
+def test_a_torque_may_be_an_estimate(read, helical):
+    found = read("helical_two_stage", helical, 'channels.T_output.offset_sd = "180 N.m"')
+    assert found.sensor("T_output").offset_sd == 180.0
+    with pytest.raises(DataError, match="is no accuracy of such an instrument"):
+        read("helical_two_stage", helical, 'channels.T_output.offset_sd = "300 N.m"')
+
+
 def test_a_path_of_the_model_becomes_a_sensor(read, helical):
     columns = {**helical, "M_an [Nm]": [v / -12.4 for v in helical["T_output_Nm"]]}
     found = read("helical_two_stage", columns, '[columns]\n"input.tau" = "M_an [Nm]"\n')
