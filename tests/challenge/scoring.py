@@ -195,14 +195,14 @@ BARS: tuple[Bar, ...] = (
     Bar(
         "false alarms on clean data",
         lambda o: _if(o.kind == "clean", o.alarm or not o.answered),
-        (0.10, 0.05, 0.05),
+        (0.07, 0.05, 0.05),
         at_most=True,
     ),
     Bar("detection", lambda o: _if(o.kind in NAMED, o.alarm), (0.93, 0.98, 0.99)),
     Bar("exact name first", lambda o: _if(o.by_name, o.exact), (0.80, 0.90, 0.92)),
-    Bar("truth in the 90 % set", lambda o: _if(o.by_name, o.covered), (0.88, 0.93, 0.95)),
-    Bar("size of the 90 % set, mean", lambda o: _if(o.by_name and o.answered, o.size), (2.5, 2.0, 1.6), "mean", True),
-    Bar("two causes: both", lambda o: _if(o.kind == "pair", o.exact), (0.60, 0.75, 0.85)),
+    Bar("truth in the 90 % set", lambda o: _if(o.by_name, o.covered), (0.90, 0.93, 0.95)),
+    Bar("size of the 90 % set, mean", lambda o: _if(o.by_name and o.answered, o.size), (2.2, 2.0, 1.6), "mean", True),
+    Bar("two causes: both", lambda o: _if(o.kind == "pair", o.exact), (0.70, 0.75, 0.85)),
     Bar("two causes: at least one", lambda o: _if(o.kind == "pair", o.shared > 0), (0.90, 0.95, 0.97)),
     Bar(
         "several causes: share that is named",
@@ -223,7 +223,7 @@ BARS: tuple[Bar, ...] = (
         lambda o: _if(o.kind == "outside", o.answered and not o.sure_wrong),
         (0.50, 0.75, 0.80),
     ),
-    Bar("single or regime wrong with > .9", lambda o: _if(o.by_name, o.sure_wrong), (0.08, 0.03, 0.03), at_most=True),
+    Bar("single or regime wrong with > .9", lambda o: _if(o.by_name, o.sure_wrong), (0.03, 0.03, 0.03), at_most=True),
     Bar("nearer than 3 sigma: truth in the 90 % set", lambda o: _if(o.by_set, o.covered), (0.88, 0.93, 0.95)),
     Bar(
         "nearer than 3 sigma: wrong with > .9", lambda o: _if(o.by_set, o.sure_wrong), (0.08, 0.03, 0.03), at_most=True

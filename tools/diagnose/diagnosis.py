@@ -61,21 +61,15 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     then("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
-    found = temper(
-        weigh(
-            made.problem,
-            made.formulas,
-            Options(request.alpha, request.seed, request.causes, logs.causes if logs else ()),
-            lambda stage, done: then(stage, 0.05 + 0.75 * done),
-        )
-    )
+    options = Options(request.alpha, request.seed, request.causes, logs.causes if logs else ())
+    found = temper(weigh(made.problem, made.formulas, options, lambda stage, done: then(stage, 0.05 + 0.75 * done)))
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
     if wrong and not request.quick:
-        held = measure_gains(found, request.seed, lambda done: then("readings left out", 0.82 + 0.13 * done))
+        held = measure_gains(found, options, lambda done: then("readings left out", 0.82 + 0.13 * done))
     then("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gearheat.model.errors import SolveError
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
 from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_alike, rank
@@ -17,7 +18,7 @@ from gearheat.tools.diagnose.answer.predict import simulate
 from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, scatters
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
-from gearheat.tools.diagnose.infer.weigh import weigh
+from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.setting import Setting
 
@@ -192,8 +193,20 @@ def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
     assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())
 
 
+def test_folds_hold_as_many_causes_as_the_answer_may(wrong, monkeypatch) -> None:
+    asked = []
+
+    def foreseen(found, held, options):
+        asked.append(options)
+        raise SolveError("none")
+
+    monkeypatch.setattr(gain, "foresee", foreseen)
+    assert gain.measure_gains(wrong[1], Options(seed=1, most=2)) == []
+    assert asked and {one.most for one in asked} == {2}
+
+
 def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
-    told = gain.measure_gains(wrong[1], seed=1)
+    told = gain.measure_gains(wrong[1], Options(seed=1))
     oil = next(s.name for s in wrong[1].problem.data.read if s.kind == "oil_temp")
     one = next(g for g in told if g.channel == oil)
     assert one.n == wrong[1].problem.data.campaign.n

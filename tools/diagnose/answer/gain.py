@@ -23,8 +23,6 @@ from .foresee import Foreseen, foresee
 
 #: Draws of the bootstrap.
 DRAWS = 2000
-#: Causes that may act together in a fold.
-MOST = 8
 #: Rows of a small campaign, of which tests are left out only.
 SMALL = 48
 #: Folds of its one scheme.
@@ -37,15 +35,15 @@ LEAST = 6
 RIDGES = np.geomspace(1e-4, 1.0, 9)
 
 
-def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
+def measure_gains(found: Found, asked: Options, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
     """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
     Args:
         found: the answer of all data; of it the folds use settings, gross readings and prior odds only
-        seed: of all draws
+        asked: how many causes may act together, and the seed of all draws
         progress: called with the share done
     """
-    problem, options = found.problem, Options(seed=seed, most=MOST, critical=found.critical)
+    problem, options = found.problem, Options(seed=asked.seed, most=asked.most, critical=found.critical)
     plans = schemes(problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
     for scheme, folds in plans.items():
@@ -57,7 +55,9 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
             done += 1
             progress(done / total)
         if errors:
-            told += [g for i in range(len(problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, seed))]
+            told += [
+                g for i in range(len(problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, asked.seed))
+            ]
     oil = [s.name for s in problem.data.read if s.kind == "oil_temp"]
     return sorted(told, key=lambda g: g.channel not in oil)
 
