@@ -55,7 +55,8 @@ class Roles:
         speed, torque: paths of both
         room: the first room, "" without one
         surfaces: parts between a body and the room's air
-        foundation: conductors to a room, coolers: coolers, and conductors to something that keeps its temperature
+        foundation: conductors from bodies to a room
+        coolers: coolers, and conductors from oil to the room around a housing, or to what keeps its temperature
         oil_side: conductors between the oil and bodies
         contacts, walls: between bodies: joints, gaps and gaskets, and what is of solid material
         inside, outside: bodies that teeth and inner rings heat, and those of the housing
@@ -302,14 +303,16 @@ def _find_roles(nets: _Nets) -> Roles:
     oil = nets.net.get(f"{nets.bath}.heat", -1)
     conductors = nets.of("conductor", "jet")
     ends = {c: nets.heat_nets([c]) for c in conductors}
-    exchangers = tuple(c for c in conductors if faults_of(nets.classes[c]).get("cooling.cooler"))
+    surfaces = nets.of("surface")
+    # beside a housing that cools, what takes heat from the oil itself to the room is its cooler
+    direct = [c for c in conductors if surfaces and oil in ends[c] and ends[c] & air]
+    exchangers = tuple(c for c in conductors if c in direct or faults_of(nets.classes[c]).get("cooling.cooler"))
     foundation = tuple(c for c in conductors if ends[c] & air and c not in exchangers)
     kept_by = tuple(c for c in conductors if ends[c] & kept and c not in (*foundation, *exchangers))
     inner = [c for c in conductors if c not in (*foundation, *kept_by, *exchangers)]
     oil_side = tuple(c for c in inner if oil in ends[c] or nets.ports(c, Lubricant) or nets.ports(c, OilLevel))
     between = tuple(c for c in inner if c not in oil_side)
     contacts = tuple(c for c in between if "cooling.contact" in faults_of(nets.classes[c]))
-    surfaces = nets.of("surface")
     outer = (nets.heat_nets([*surfaces, *foundation]) - air) - {oil}
     inside, outside = nets.inside_outside(between, outer)
     if not (warm := nets.body_of(oil) or next(iter((*inside, *outside)), "")):

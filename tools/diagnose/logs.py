@@ -18,7 +18,7 @@ from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
-from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question
+from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question, window_length
 from .infer.problem import Aside
 from .infer.weigh import Options, weigh
 from .library.knobs import moves
@@ -104,8 +104,13 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     data = read_logs(inputs)
     check(data)
     known = fleet(
-        inputs.scenario, data.reference, data.siblings, data.logs[0], lambda stage, p: progress(stage, 0.02 + 0.4 * p)
-    )
+        inputs.scenario,
+        data.reference,
+        data.siblings,
+        data.logs[0],
+        lambda stage, p: progress(stage, 0.02 + 0.4 * p),
+        window_length(data.logs),
+    ).going_on(data.logs)
     asked = question(known, data.logs, lambda stage, p: progress(stage, 0.42 + 0.2 * p))
     return composed(inputs, known, asked, data, progress)
 

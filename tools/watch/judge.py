@@ -78,6 +78,7 @@ class Judge:
         data = Logs([log], self.reference, self.siblings)
         check(data)
         known, formulas = self.known(log)
+        known = known.going_on(data.logs)
         asked = question(known, data.logs)
         found = judged(self.inputs, known, asked, data, formulas=formulas)
         last = expect(known, asked.windows.some(np.array([asked.windows.time.argmax()])))

@@ -17,6 +17,8 @@ SEASON = 0.25
 WINDOW = 0.25
 #: How many deviations this expectation counts for.
 COUNTS = 2.0
+#: Share of the covariance of seasons by which a season differs from itself.
+SAME = 1e-6
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
 
@@ -56,6 +58,7 @@ class Levels:
         machine, season, window: covariances of the deviations
         freedom: degrees of freedom of the season's
         mean, covariance: of each machine's knobs (machines, k), (machines, k, k)
+        season_mean, season_covariance: of them in each season of a machine (n, k), (n, k, k)
     """
 
     root: np.ndarray
@@ -65,6 +68,14 @@ class Levels:
     freedom: float
     mean: np.ndarray
     covariance: np.ndarray
+    season_mean: np.ndarray
+    season_covariance: np.ndarray
+
+    def within(self, season: int) -> Levels:
+        """The same where a season of the first machine goes on: it has no deviation of its own."""
+        mean, covariance = self.mean.copy(), self.covariance.copy()
+        mean[0], covariance[0] = self.season_mean[season], self.season_covariance[season]
+        return replace(self, mean=mean, covariance=covariance, season=SAME * self.season)
 
 
 def first_levels(sd: np.ndarray, machines: int) -> Levels:
@@ -77,7 +88,7 @@ def first_levels(sd: np.ndarray, machines: int) -> Levels:
     machine = np.diag(sd**2)
     root, mean = 1.5**2 * machine, np.zeros((machines, len(sd)))
     C = np.tile(root + machine, (machines, 1, 1))
-    return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * machine, COUNTS, mean, C)
+    return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * machine, COUNTS, mean, C, mean[:0], C[:0])
 
 
 def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
@@ -110,6 +121,8 @@ def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begu
             freedom=max(n - len(np.unique(machine_of)), 0) + COUNTS,
             mean=z,
             covariance=Cz,
+            season_mean=zy,
+            season_covariance=Cy,
         )
     return levels
 

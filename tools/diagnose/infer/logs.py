@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -16,9 +16,9 @@ from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
 from ..model.entries import Term
 from ..model.logged import Logged
-from ..model.logs import Filter, Passed
+from ..model.logs import Filter, Passed, log_likelihood
 from ..model.plant import Plant
-from ..model.windows import Windows, windows
+from ..model.windows import WINDOW, Windows, windows
 from .levels import Levels, Quadratics, estimate, first_levels
 from .problem import Look, Problem
 
@@ -32,10 +32,14 @@ SWITCH = 0.8
 SEASONS = 12
 #: Spans of time of which the logs in question tell the knobs, about.
 SPANS = 16
+#: Samples of a window that count, at least.
+SHORTEST = 40
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
 #: Correlations of errors are summed over so many samples at most, and down to so much.
 MEMORY = 36
+#: Windows by which it is told whether logs hold means.
+TIMED = 24
 #: What lasts longer is a matter of windows and years.
 CORRELATED = 0.05
 #: Length of a year in time that is no calendar's [s].
@@ -54,6 +58,8 @@ class Fleet:
         past: windows of the healthy logs of the machine in question
         levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
+        length: samples of a window that count
+        seasons: machine and number of a season by the calendar -> number of that one in the levels
     """
 
     filter: Filter
@@ -61,12 +67,22 @@ class Fleet:
     past: Windows
     levels: Levels
     share: float
+    length: int
+    seasons: Mapping[tuple[int, int], int] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
         """The same with one of its machines in question, without its past."""
         mean, covariance = (a[[machine]] for a in (self.levels.mean, self.levels.covariance))
         levels = replace(self.levels, mean=mean, covariance=covariance)
-        return replace(self, past=self.past.some(np.zeros(0, dtype=int)), levels=levels)
+        seasons = {(0, number): n for (one, number), n in self.seasons.items() if one == machine}
+        return replace(self, past=self.past.some(np.zeros(0, dtype=int)), levels=levels, seasons=seasons)
+
+    def going_on(self, logs: Sequence[Log]) -> Fleet:
+        """The same for logs in question that lie in one season of the machine's healthy ones."""
+        ends = np.array([log.time[k] for log in logs for k in (0, -1)])
+        there = set(season_of(ends, True).tolist()) if all(log.dated for log in logs) else set[int]()
+        known = self.seasons.get((0, min(there))) if len(there) == 1 else None
+        return self if known is None else replace(self, levels=self.levels.within(known))
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
@@ -89,6 +105,11 @@ def _pass(progress: Progress, logs: str, n: int) -> Callable[[float], None]:
     return lambda share: progress(f"{logs}, pass {n + 1} of {PASSES}", (n + share) / PASSES)
 
 
+def window_length(logs: Sequence[Log]) -> int:
+    """Samples of a window that count, so that logs in question have as many windows as spans."""
+    return int(np.clip(sum(log.n for log in logs) // SPANS, SHORTEST, WINDOW))
+
+
 def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
     """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
     if not dated:
@@ -103,6 +124,7 @@ def fleet(
     siblings: Sequence[Log],
     all_sensors: Log,
     progress: Progress = lambda stage, share: None,
+    length: int = WINDOW,
 ) -> Fleet:
     """What the healthy logs say of the machine and its type.
 
@@ -112,6 +134,7 @@ def fleet(
         siblings: a log of each other machine
         all_sensors: a log that has the sensors of those in question
         progress: told of each stage and the share done
+        length: samples of a window that count
     """
     own, found = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
@@ -120,13 +143,14 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0)
-    past = windows(logs, own.given, own.read)
+        return Fleet(own, found, empty, begun, 0.0, length)
+    past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
     z = np.zeros((machines, len(sd)))
+    own.moments = _of_moments(own, past, z[machine])
     for n in range(PASSES):
         at = z[machine]
         passed = own.run(past, at, progress=_pass(progress, "healthy logs", n))
@@ -137,7 +161,17 @@ def fleet(
             z = z + np.clip(levels.mean - z, -sd, sd)
     share = independent(passed)
     levels = estimate(said.times(share), season, machine_of, begun)
-    return Fleet(own, found, past.some(machine == 0), levels, share)
+    dated = all(log.dated for log in logs)
+    seasons = {(int(one), int(number)): n for n, (one, number) in enumerate(keys) if dated}
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, seasons)
+
+
+def _of_moments(own: Filter, data: Windows, z: np.ndarray) -> bool:
+    """Whether windows hold what was read at moments, not means, by how well the filter foresees some of them."""
+    some, logs = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int), []
+    for own.moments in (False, True):
+        logs.append(log_likelihood(own.run(data.some(some), z[some], slopes=False)))
+    return logs[1] > logs[0]
 
 
 def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
@@ -191,11 +225,12 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
         progress: told of each stage and the share done
     """
     own, levels = found.filter, found.levels
-    data = windows(logs, own.given, own.read)
-    seasons = season_of(data.time, all(log.dated for log in logs))
-    there, season = np.unique(seasons, return_inverse=True)
+    data = windows(logs, own.given, own.read, found.length)
+    there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     at, sd = np.tile(levels.mean[0], (len(season), 1)), np.array([k.sd for k in found.knobs])
+    if not found.share:
+        own.moments = _of_moments(own, data, at)
     wide = np.linalg.inv(levels.covariance[0] + levels.season + np.diag(sd**2))
     for n in range(PASSES):
         passed = own.run(data, at, progress=_pass(progress, "logs in question", n))

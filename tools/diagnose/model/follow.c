@@ -6,6 +6,7 @@
 /* n windows of L samples with k knobs; derivatives only where k > 0. */
 typedef struct {
   whole n, L, k, free;                       /* whether samples that count do not correct */
+  whole moments;                             /* whether readings are of the end of a sample, and no means over it */
   const whole *length;                       /* of each window (n) */
   const unsigned char *counts;               /* (n, L) */
   const double *given, *read;                /* (n, L, given), (n, L, shown), NaN where missing */
@@ -32,6 +33,8 @@ typedef struct {
   const Logs *logs;
   whole t, nx, nw, reads, columns;          /* columns: k knobs, then nx states */
   lanes *factor, *shift, *offset, *dp;
+  lanes *early;                             /* states at the end, less those with the inputs of the sample before */
+  double first;                             /* weight of the first stage in what is read */
   lanes *w[3], *LU[2], *base;               /* at the begin, and of both stages */
   whole *pivot[2];
   lanes *y[2], *d[2], *by[2];               /* readings, and derivatives of unknowns and of readings of both stages */
@@ -123,28 +126,30 @@ static void log_slopes(Follow *F, double step, lanes h) {
     log_turn(F, stage, h);
   }
   for (whole i = 0; i < F->columns * F->reads; i++)
-    F->by[1][i] = (1 - LOG_GAMMA) * F->by[0][i] + LOG_GAMMA * F->by[1][i];
+    F->by[1][i] = F->first * F->by[0][i] + (1 - F->first) * F->by[1][i];
 }
 
 /* Covariance of the errors with its factors, gain, covariance after the sample. A walk that gains Q in a sample has Q/3
-   in the mean over it, and Q/2 in common with its end. */
+   in the mean over it, and Q/2 in common with its end. Inputs of moments come up to a sample here early or late. */
 static void log_update(Follow *F) {
   const Logs *D = F->logs;
   const whole nx = F->nx, m = F->reads;
   const lanes *C = F->by[1] + D->k * m, *A = F->d[1] + D->k * F->nw;
+  const double mean = D->moments ? 1 : 1.0 / 3, common = D->moments ? 1 : 0.5;
   int fine[LANES] = {0};
+  for (whole i = 0; i < nx; i++)
+    for (whole j = 0; j < nx; j++) F->P[j * nx + i] += F->early[i] * F->early[j] / 3;
   product(F->CP, C, F->P, m, nx, nx, m, nx);
   product(F->AP, A, F->P, nx, nx, nx, F->nw, nx);
   for (whole i = 0; i < m; i++)
     for (whole j = 0; j < m; j++) {
-      lanes sum = lanes_all(i == j && D->state_of[i] >= 0 ? D->Q[D->state_of[i]] / 3 : 0.0);
-      if (i != j && D->state_of[i] >= 0 && D->state_of[i] == D->state_of[j]) sum += D->Q[D->state_of[i]] / 3;
+      lanes sum = lanes_all(D->state_of[i] >= 0 && D->state_of[i] == D->state_of[j] ? mean * D->Q[D->state_of[i]] : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->CP[s * m + i] * C[s * m + j];
       F->V[i * m + j] = i == j ? sum + F->variance[i] : sum;
     }
   for (whole i = 0; i < nx; i++) {
     for (whole j = 0; j < m; j++) {
-      lanes sum = lanes_all(D->state_of[j] == i ? D->Q[i] / 2 : 0.0);
+      lanes sum = lanes_all(D->state_of[j] == i ? common * D->Q[i] : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->AP[s * nx + i] * C[s * m + j];
       F->cross[i * m + j] = F->gain[i * m + j] = sum;
     }
@@ -208,11 +213,32 @@ static void log_correct(Follow *F, const Told *told, lanes corrects, lanes count
   log_count(F, by_z, counts);
 }
 
+/* The inputs of a sample. */
+static void log_given(Follow *F, whole t) {
+  Runs *R = &F->runs;
+  const Logs *D = F->logs;
+  for (whole g = 0; g < R->plant->given; g++) {
+    EACH R->u[D->u_at[g]][l] = D->given[(R->run[l] * D->L + t) * R->plant->given + g];
+    R->u[D->u_at[g]] = F->factor[g] * R->u[D->u_at[g]] - F->shift[g];
+  }
+}
+
+/* Both stages of a sample. */
+static void log_step(Follow *F, lanes h) {
+  for (int stage = 0; stage < 2; stage++) {
+    memcpy(F->w[stage + 1], F->w[stage], F->nw * sizeof(lanes));
+    for (whole i = 0; i < F->nx; i++)
+      F->base[i] = F->w[0][i] + (stage ? (1 - LOG_GAMMA) / LOG_GAMMA * (F->w[1][i] - F->w[0][i]) : lanes_all(0.0));
+    log_stage(F, F->w[stage + 1], F->LU[stage], F->pivot[stage], h);
+    call(&F->runs, F->runs.plant->readings, 0, F->w[stage + 1], F->y[stage], 0);
+  }
+}
+
 /* One sample of all lanes that are on. */
 static void log_sample(Follow *F, const Told *told) {
   Runs *R = &F->runs;
   const Logs *D = F->logs;
-  const whole m = F->reads, given = R->plant->given;
+  const whole m = F->reads;
   const lanes h = lanes_all(*D->step * LOG_GAMMA);
   lanes counts = lanes_all(0.0), corrects = counts;
   whole at[LANES];
@@ -221,19 +247,16 @@ static void log_sample(Follow *F, const Told *told) {
     counts[l] = R->on[l] && D->counts[at[l]];
     corrects[l] = R->on[l] && !(D->free && D->counts[at[l]]);
   }
-  for (whole g = 0; g < given; g++) {
-    EACH R->u[D->u_at[g]][l] = D->given[at[l] * given + g];
-    R->u[D->u_at[g]] = F->factor[g] * R->u[D->u_at[g]] - F->shift[g];
+  memset(F->early, 0, F->nx * sizeof *F->early);
+  const int halved = D->moments && F->t % 2; /* the second half of a sample: the first has the inputs before */
+  if (halved) {
+    log_given(F, F->t - 1), log_step(F, h);
+    for (whole i = 0; i < F->nx; i++) F->early[i] = -F->w[2][i];
   }
-  for (int stage = 0; stage < 2; stage++) {
-    memcpy(F->w[stage + 1], F->w[stage], F->nw * sizeof(lanes));
-    for (whole i = 0; i < F->nx; i++)
-      F->base[i] = F->w[0][i] + (stage ? *D->step * (1 - LOG_GAMMA) / h * (F->w[1][i] - F->w[0][i]) : lanes_all(0.0));
-    log_stage(F, F->w[stage + 1], F->LU[stage], F->pivot[stage], h);
-    call(R, R->plant->readings, 0, F->w[stage + 1], F->y[stage], 0);
-  }
+  log_given(F, F->t), log_step(F, h);
+  for (whole i = 0; i < F->nx && halved; i++) F->early[i] += F->w[2][i];
   for (whole i = 0; i < m; i++) {
-    const lanes y = (1 - LOG_GAMMA) * F->y[0][i] + LOG_GAMMA * F->y[1][i] + F->offset[i];
+    const lanes y = F->first * F->y[0][i] + (1 - F->first) * F->y[1][i] + F->offset[i];
     EACH {
       const double e = D->read[at[l] * m + i] - y[l];
       F->e[i][l] = isfinite(e) ? e : 0, F->variance[i][l] = isfinite(e) ? D->scatter[i] * D->scatter[i] : MISSING * MISSING;
@@ -255,6 +278,7 @@ static void log_placed(Follow *F, Room *room) {
   R->sparse = vectors(room, P->most), R->direct = vectors(room, P->most);
   R->LU = vectors(room, nw * nw), R->pivot = bytes(room, pivots);
   F->factor = vectors(room, P->given), F->shift = vectors(room, P->given), F->offset = vectors(room, m);
+  F->early = vectors(room, nx);
   F->dp = vectors(room, P->knobs * k), F->base = vectors(room, nx);
   for (int stage = 0; stage < 3; stage++) F->w[stage] = vectors(room, nw);
   for (int stage = 0; stage < 2; stage++) {
@@ -290,7 +314,8 @@ __attribute__((visibility("default"))) int follow(const Plant *plant, const Logs
   const whole row = 0;
   const Duty one = {.S = 1, .H = 1, .row = &row};
   Follow F = {.runs = {.plant = plant, .duty = &one}, .logs = logs, .nx = plant->nx, .nw = plant->nw,
-              .reads = plant->shown, .columns = logs->k + plant->nx};
+              .reads = plant->shown, .columns = logs->k + plant->nx,
+              .first = logs->moments ? 0 : 1 - LOG_GAMMA};
   Room room = {0};
   void *block;
   log_placed(&F, &room);

@@ -3,6 +3,7 @@
 The states of the machine drift by a random walk of their own (state noise), so that what the model misses in one sample
 does not count again in the next: the one-step prediction errors are what is left to explain. Without correction the
 same steps run the model freely. Inputs are means over a sample and hold during it; readings are means over it as well.
+Or both are read at moments: half a sample has the inputs before, half those at its end, where they are read.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ SCATTER = 1.0
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
+#: What a pass tells of each sample.
+ROWS = ("error", "variance", "shown")
 #: Windows that a thread takes at a time, those that go side by side; and those between two words on progress.
 SIDE = 8
 BLOCK = 64
@@ -67,6 +70,8 @@ class Filter:
         self.given, self.read = tuple(given), tuple(read)
         #: Scatter of each reading about the model [K] (reads,).
         self.scatter = np.full(len(read), SCATTER)
+        #: Whether what logs hold was read at moments, and is no mean over a sample.
+        self.moments = False
         self.nx = plant.nx
         self.u_at = [plant.u_place[path] for path in plant.given]
         #: State that each sensor reads, -1 where it reads something else.
@@ -159,6 +164,7 @@ class Filter:
         self, data: Windows, z: np.ndarray, free: bool, slopes: bool, progress: Callable[[float], None]
     ) -> dict[str, np.ndarray]:
         """What `Passed` holds of windows by falling length."""
+        data = data.halved() if self.moments else data
         (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
         p, dp, factor, shift, offset, by = self.settings(z)
         x, sd = self.start(data, offset)
@@ -168,6 +174,7 @@ class Filter:
             L=length,
             k=k,
             free=int(free),
+            moments=int(self.moments),
             length=lengths,
             counts=data.counts,
             given=data.given,
@@ -186,13 +193,13 @@ class Filter:
             x0=x,
             z0=self.plant.flat.starts("algebraic"),
             P0=sd**2,
-            Q=self.noise**2,
+            Q=self.noise**2 / (2 if self.moments else 1),
             scatter=self.scatter,
             step=np.array([data.step]),
             tails=np.array([TAILS]),
         )
         found = {"slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
-        found |= {name: np.full(data.read.shape, np.nan) for name in ("error", "variance", "shown")}
+        found |= {name: np.full(data.read.shape, np.nan) for name in ROWS}
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
@@ -203,7 +210,15 @@ class Filter:
             share_rows(followed, last - first, SIDE, 0)
             progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
-        return found
+        return {name: a[:, 1::2] if self.moments and name in ROWS else a for name, a in found.items()}
+
+
+def log_likelihood(passed: Passed) -> float:
+    """Of the prediction errors, with heavy tails."""
+    far = passed.error**2 / (TAILS * passed.variance)
+    return float(
+        -np.nansum((TAILS + 1) / 2 * np.log1p(far) + np.where(np.isfinite(far), np.log(passed.variance) / 2, 0))
+    )
 
 
 def _first(read: np.ndarray) -> np.ndarray:

@@ -44,6 +44,15 @@ class Windows:
         given, read, there, counts = (a[keep] for a in (self.given, self.read, self.there, self.counts))
         return Windows(given, read, there, counts, self.machine[keep], self.time[keep], self.rows[keep], self.step)
 
+    def halved(self) -> Windows:
+        """The same with each sample as two: the inputs before, without a reading, and those at its end."""
+        given, read, there, counts, rows = (
+            np.repeat(a, 2, axis=1) for a in (self.given, self.read, self.there, self.counts, self.rows)
+        )
+        given[:, 2::2] = self.given[:, :-1]
+        read[:, ::2] = np.nan
+        return Windows(given, read, there, counts, self.machine, self.time, rows, self.step / 2)
+
 
 def windows(
     logs: Sequence[Log], given: Sequence[str], read: Sequence[str], length: int = WINDOW, settling: int = SETTLING
