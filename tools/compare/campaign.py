@@ -70,7 +70,7 @@ def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
     rows = [int(row) for row in np.flatnonzero(c.test == test)]
     shafts, rooms = study.scenario.shaft_paths(), _rooms_at_start(study, test)
     T = c.T_start[test] if np.isfinite(c.T_start[test]) else next(iter(rooms.values()), START) + c.start_by_room
-    start = {q.name: float(T) for q in flat.states if q.unit == "K"}
+    start = dict.fromkeys(flat.bodies, float(T))
     if c.steady:  # from the state that is read
         state = study.nominal.at({**oil, **study.given(rows[0])}) or {}
         start = {name: state.get(name, value) for name, value in start.items()}

@@ -54,7 +54,7 @@ class Description(Answer):
         """The machine: its shafts, teeth, bearings, seals, oil and housing, in the colours of its temperatures."""
         from ..show.machine import end_words, machine_picture
 
-        bodies = [q.name for q in self.flat.states if q.unit == "K"] if self.rest is not None else []
+        bodies = self.flat.bodies if self.rest is not None else ()
         values = {name: float(c[0]) for name, c in self.rest.columns.items()} if self.rest is not None else {}
         return machine_picture(
             self.scenario.spec.assembly(),

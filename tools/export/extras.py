@@ -238,7 +238,7 @@ def figures_of(
 
 def _warm_up(flat: FlatModel, run: Result) -> Figure:
     """Temperatures of the bodies and the loss over the reference run."""
-    bodies = [q.name for q in flat.states if q.unit == "K"]
+    bodies = flat.bodies
     loss = next((q.name for q in flat.outputs if q.name == "efficiency.P_loss"), None)
     figure, panels = empty(9.0, 5.0 if loss else 3.4, 2 if loss else 1, 1, sharex=True)
     changed = any(run[q.name][0] != run[q.name][-1] for q in flat.inputs)

@@ -159,9 +159,9 @@ def hold(
         values: inputs and parameters by path (SI), per point
         temperatures: of every body, per point [K]
     """
-    hot = [q.name for q in flat.states if q.unit == "K"]
     points = [
-        point(flat, row, dict.fromkeys(hot, T), who="losses") for row, T in zip(values, temperatures, strict=True)
+        point(flat, row, dict.fromkeys(flat.bodies, T), who="losses")
+        for row, T in zip(values, temperatures, strict=True)
     ]
     x, u, p = (np.array([getattr(here, kind) for here in points]).T for kind in "xup")
     y = evaluate(flat, x.reshape(len(flat.states), -1), u, p)["y"]

@@ -249,4 +249,4 @@ def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule |
     given = schedule is not None and room in schedule.values
     T = float(schedule.values[room][0]) if schedule is not None and given else flat.quantity(room).start
     own = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
-    return {q.name: T for q in flat.states if q.unit == "K" and q.name not in own}
+    return {name: T for name in flat.bodies if name not in own}

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 LARGE = 500
 #: Speed or torque over that of the rig file from which on it may be a slip [1].
 FAR = 5.0
+#: Types of parts whose power from a shaft goes into the oil.
+INTO_OIL = ("OilPump", "GearJet")
+#: Share by which losses of the parts and between the shafts differ where both are told: that of a motor is inside.
+APART = 0.01
 #: Temperature of the oil up to which gear units are rated thermally [K].
 RATED = 273.15 + 95.0
 #: What it is.
@@ -97,9 +101,14 @@ class SteadyState(Quantities):
         """Efficiency, losses by kind, the hottest body, and how far the oil is below the end of thermal ratings."""
         by_kind, meters = self.losses_by_kind(), self.scenario.spec.of_type("Efficiency")
         losses = ", ".join(f"{PLURAL.get(kind, kind)} {_kilowatts(P)}" for kind, P in by_kind.items())
-        eta = f"efficiency {100 * self[f'{meters[0]}.eta']:.2f} %, " if meters else ""
-        lines = [f"{eta}loss {_kilowatts(sum(by_kind.values()))}: {losses}"] if by_kind else []
-        warm = {q.name.partition(".")[0]: self[q.name] for q in self.flat.states if q.unit == "K"}
+        whole, eta = sum(by_kind.values()), ""
+        if meters and max(self.power().values(), default=0.0) > 0.0:  # at rest there is none
+            between = self[f"{meters[0]}.P_loss"]
+            apart = abs(between - whole) > APART * whole
+            eta = f"efficiency {100 * self[f'{meters[0]}.eta']:.2f} %, "
+            eta += f"{_kilowatts(between)} between the shafts, in all " if apart else ""
+        lines = [f"{eta}loss {_kilowatts(whole)}: {losses}"] if by_kind else []
+        warm = {name.removesuffix(".T"): self[name] for name in self.flat.bodies}
         if warm:
             hottest = max(warm, key=lambda body: warm[body])
             lines.append(f"hottest: {hottest} {text(warm[hottest], 'K', 3)}")
@@ -257,7 +266,8 @@ def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]
     for name in every:
         part, _, key = name.rpartition(".")
         whole = f"{part}.P_loss" in every
-        if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
+        taken = key == "P" and scenario.types[part].__name__ in INTO_OIL
+        if part not in meters and (taken or key == "P_loss" or (key.startswith("P_loss_") and not whole)):
             found.setdefault(part, []).append(name)
     return found
 

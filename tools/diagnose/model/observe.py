@@ -266,7 +266,7 @@ class _Look:
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
-        x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
+        x0[:, [q.name in plant.flat.bodies for q in plant.flat.states]] = start[:, None]
         rows = o.rows[o.ran]
         return march(plant, phases.of(o.ran), x0[o.ran], p[:, rows], pace[rows], wanted)
 
