@@ -7,6 +7,7 @@ from .scenarios.ranges import override as override
 from .tools.build.new import NewRig as NewRig, new as new
 from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
 from .tools.compare.card import CardText as CardText, card as card
+from .tools.compare.published import CampaignFiles as CampaignFiles, campaign as campaign
 from .tools.compare.replay import Replays as Replays, replay as replay
 from .tools.compare.results import Errors as Errors, compare as compare
 from .tools.compare.run import CampaignRun as CampaignRun, run as run
@@ -21,7 +22,6 @@ from .tools.diagnose.api import (
     diagnose as diagnose,
     plan as plan,
 )
-from .tools.diagnose.campaigns import CampaignFiles as CampaignFiles, campaign as campaign
 from .tools.export.export import export as export, play as play
 from .tools.export.fmu import Exported as Exported
 from .tools.films.film import FilmTable as FilmTable, film as film

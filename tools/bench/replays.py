@@ -11,7 +11,7 @@ from typing import Any
 
 from ...scenarios.shipped import RIGS
 from ..diagnose.api import diagnose
-from ..diagnose.campaigns import campaign
+from ..compare.published import campaign
 from ..show.console import note
 from ..watch.api import watch
 from .harness import TABLES

@@ -14,8 +14,10 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.checks import too_small
 from ...scenarios.measured.guess import Known, guess_card, wanted_sensors
+from ...scenarios.measured.logs import read_log
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.sensors import CONTEXT
+from ...scenarios.measured.times import logged_step
 from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
 from ..show.console import as_json as json_text, write
@@ -113,9 +115,12 @@ def card(
         raise DataError(f"--data {path}: there is no such file.")
     guessed = guess_card(path, scenario, Known(columns or {}, units or {}, magnitudes or {}))
     whole = default_card(scenario, priors, guessed)
-    with problems:
-        problems += too_small(read_campaign(path, scenario, whole))
     header, rows = read_cells(path)
+    with problems:
+        if logged_step(header, [row for _, row in rows]):
+            read_log(path, scenario, whole)
+        else:
+            problems += too_small(read_campaign(path, scenario, whole))
     reads = {name: sensor.reads for name, sensor in wanted_sensors(scenario).items()}
     reads |= {name: text for name, (text, *_) in CONTEXT.items()}
     cells = (header, *(row for _, row in rows[:SHOWN]))

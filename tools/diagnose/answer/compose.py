@@ -134,7 +134,8 @@ def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[fi
 def next_experiments(setting: Setting, found: Found, decision: Decision) -> tuple[findings.Experiment, ...]:
     """Experiments by what they add to the distances between the leading causes."""
     known = {c.id for c in found.first.candidates}
-    causes = [c for c in leading(decision) if c in known][:JUDGED]
+    asked = list(dict.fromkeys(group[0] for a in decision.answers for group in a.classes if group[0] in known))
+    causes = (asked if len(asked) > 1 else [c for c in leading(decision) if c in known])[:JUDGED]
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}

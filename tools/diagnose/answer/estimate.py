@@ -144,11 +144,14 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
 
 
 def first_test(campaign: Campaign, place: float) -> str:
-    """The first test behind a place in the running order, which goes from 0 to 1, with its date where it has one."""
+    """The first test behind a place in the running order, which goes from 0 to 1, with its date; of logs the date."""
     later = np.flatnonzero(campaign.progress >= place)
     row = int(later[np.argmin(campaign.progress[later])]) if len(later) else int(np.argmax(campaign.progress))
     test = int(campaign.test[row])
-    return f"test {test + 1}{f' ({date})' if (date := campaign.date[test]) else ''}"
+    date = campaign.date[test]
+    if campaign.names[test : test + 1] == ("",):  # of a log
+        return date or f"span {test + 1} of {campaign.n_tests}"
+    return f"test {test + 1}{f' ({date})' if date else ''}"
 
 
 def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | None, float | None]]:

@@ -105,7 +105,7 @@ class Vector:
 
     def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
         self.nz, self.acting = problem.nz, tuple(acting)
-        low, high = [np.full(self.nz, -6.0)], [np.full(self.nz, 6.0)]
+        low, high = ([side] for side in problem.data.limits[:, : self.nz])
         precision, longest = [np.ones(self.nz)], [np.full(self.nz, LONGEST)]
         self.sizes: list[int] = []
         begin = self.nz

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -15,6 +16,8 @@ from .formula import Formula
 from .march import Marched, Phases, duty, march
 from .plant import Plant
 
+#: Largest size of a nuisance.
+FARTHEST = 6.0
 #: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
 Slope = dict[int, np.ndarray]
 #: Part -> paths that are changed in it, and the bytes of their values of each row, which are equal where these are.
@@ -84,6 +87,21 @@ class Observed(Measured):
         self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
         #: Which reads of a run lie along logged courses.
         self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
+
+    @cached_property
+    def limits(self) -> np.ndarray:
+        """Lowest and highest nuisances (2, k), inside which no value of the rig is beyond what is possible."""
+        found = np.array([[-FARTHEST], [FARTHEST]]).repeat(len(self.nuisances), axis=1)
+        for k, nuisance in enumerate(self.nuisances):
+            for path, exponent in nuisance.paths.items():
+                place = self.plant.place.get(path)
+                q = self.plant.flat.parameters[place] if place is not None else None
+                for side, end in enumerate((q.low, q.high) if q else ()):
+                    if 0 < end < np.inf and exponent * nuisance.sd:
+                        z = np.log(end / self.plant.p[place]) / (exponent * nuisance.sd)
+                        low, high = found[:, k]
+                        found[:, k] = (low, min(high, z)) if side == (exponent > 0) else (max(low, z), high)
+        return found
 
     def another(self, campaign: Campaign) -> Observed:
         """Another campaign on the same rig."""

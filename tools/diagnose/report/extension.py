@@ -33,6 +33,8 @@ from .phrases import name_of
 ADDED = "extra_"
 #: Here and in the extended rig: a found part can stand beside that of a new search.
 FOUND = "found_"
+#: How a line above a rig file ends that tells a value which was cut.
+CUT = "no more than this is possible."
 #: Part of a standard deviation that its derivative is taken over.
 STEP = 0.05
 #: Share of a value below which a change is left out.
@@ -143,9 +145,7 @@ def _with_values(scenario: Scenario, values: Mapping[str, float], source: str) -
     known = scenario.settable()
     wanted = {path: float(value) for path, value in values.items() if path in known}
     cut = {path: float(np.clip(value, known[path].low, known[path].high)) for path, value in wanted.items()}
-    notes = [
-        f"{p} would be {phrases.number(v, 4)}; no more than this is possible." for p, v in wanted.items() if v != cut[p]
-    ]
+    notes = [f"{p} would be {phrases.number(v, 4)}; {CUT}" for p, v in wanted.items() if v != cut[p]]
     return scenario.with_values(cut, source), notes
 
 
@@ -243,6 +243,12 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
     x = h.fit.look.x
     uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])
     return at(x).text(uncertain)
+
+
+def cuts(text: str) -> tuple[str, ...]:
+    """What was cut in the text of an extended rig, as warnings."""
+    lines = (line.removeprefix("# ") for line in text.splitlines() if line.startswith("# "))
+    return tuple(f"in the extended rig {line}" for line in lines if line.endswith(CUT))
 
 
 def calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:

@@ -15,6 +15,8 @@ from ..library.entries import TABLE
 FEW_PARTS = 3
 #: Share by which one error must exceed another to be worse.
 NOTICEABLE = 0.005
+#: The same played over the data, where a fit of all channels trades a little of one.
+WORSE = 0.06
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
 #: How the part of a form's name begins that says where it acts, as the regime says with its numbers.
@@ -253,7 +255,7 @@ def doubt(findings: Findings) -> str:
         worse = [
             f"{channel} {number(p.rms_calibrated)} calibrated, {with_unit(p.rms_extended, p.unit)} extended"
             for channel, p in findings.played.items()
-            if p.rms_extended > (1 + NOTICEABLE) * p.rms_calibrated
+            if p.rms_extended > (1 + WORSE) * p.rms_calibrated
         ]
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
         return f"{text} {useless}" if worse else ""

@@ -29,6 +29,8 @@ MOST = 6
 FEW = 3
 #: An answer of more causes than these is told cause by cause.
 TOGETHER = 2
+#: By how many standard deviations an experiment must raise a distance to be proposed.
+RAISED = 0.5
 #: Numbers of causes in words.
 COUNTS = {2: "Two", 3: "Three", 4: "Four"}
 
@@ -101,7 +103,11 @@ def _claim(findings: Findings) -> str:
     if any(len(a.causes) > TOGETHER for a in answers):
         return _together(findings) + beside.format("them")
     if findings.verdict == "ambiguous":
+        if len(answers) == 1:
+            none = phrases.percent(findings.nothing)
+            return f"Something may be wrong: {_probable(answers[0])}, or nothing is ({none})."
         listed = [a for k, a in enumerate(answers) if k < MOST and (k < 2 or a.probability >= LISTED)]
+        listed = list(answers) if len(answers) == len(listed) + 1 else listed
         rest = answers[len(listed) :]
         chance = phrases.percent(sum(a.probability for a in rest))
         unlikely = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
@@ -187,8 +193,7 @@ def _do(findings: Findings) -> str:
     exposing = _exposing(findings)
     if findings.verdict == "explained" and exposing:
         steps.append(f"To confirm it: {exposing}")
-    elif findings.next_experiment:
-        e = findings.next_experiment[0]
+    elif (e := next(iter(findings.next_experiment), None)) and e.separation_after > e.separation_before + RAISED:
         before, after = phrases.sigma(e.separation_before), phrases.sigma(e.separation_after)
         steps.append(
             f"Measure next: {e.what or e.id}. That separates {names_of(e.separates)}: {before} standard"
@@ -217,8 +222,10 @@ def _size(findings: Findings) -> str:
         first = findings.answers[0]
         which = f"if it is {phrases.answer(first)}: " if findings.verdict == "ambiguous" else ""
         which = "the likeliest of these answers: " if len(first.causes) > TOGETHER else which
-        effects = "; ".join(phrases.impact(i) for i in findings.impact.values())
-        said.append(f"{sentence(which + effects)}, on average.")
+        powers = {i.what for i in findings.impact.values() if i.unit == "W"}
+        felt = [i for i in findings.impact.values() if i.unit == "W" or i.what not in powers]
+        effects = "; ".join(phrases.impact(i) for i in felt if phrases.number(max(map(abs, i.ci95)), 2) != "0")
+        said += [f"{sentence(which + effects)}, on average."] if effects else []
     for answer in findings.answers[: 1 if findings.verdict != "ambiguous" else 2]:
         for group in answer.causes:
             sizes = []

@@ -9,9 +9,9 @@ from typing import Any
 
 from ...model.errors import ScenarioError
 from ...scenarios.measured.adapter import Adapter, adapter, write_csv
+from ..diagnose.api import Diagnosis, diagnose
 from ..show.console import folder as make_folder, write
 from ..show.display import Display
-from .api import Diagnosis, diagnose
 
 
 @dataclass(frozen=True, eq=False, repr=False)
