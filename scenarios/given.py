@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 from ..model.core.flat import Quantity
+from ..model.errors import ScenarioError
 from .load import load
 from .scenario import Scenario
 
@@ -23,7 +24,7 @@ class HoldsScenario(Protocol):
 #: A name of a shipped rig, a rig file, or a rig in Python.
 RigLike = str | Path | Scenario | HoldsScenario
 #: What a user sets: name -> text with a unit, quantity of pint, or number in SI; or texts "NAME=VALUE".
-Settings = Mapping[str, Any] | Sequence[str]
+Settings = Mapping[str, Any] | str | Sequence[str]
 
 
 def scenario_of(rig: RigLike) -> Scenario:
@@ -37,7 +38,11 @@ def scenario_of(rig: RigLike) -> Scenario:
     """
     if isinstance(rig, Scenario):
         return rig
-    return load(rig) if isinstance(rig, str | Path) else rig.scenario
+    if isinstance(rig, str | Path):
+        return load(rig)
+    if not hasattr(rig, "scenario"):
+        raise ScenarioError(f"{rig!r} is no rig. Give its name, its file, or what gearheat.load returns.")
+    return rig.scenario
 
 
 def spell(value: Any, quantity: Quantity | None = None) -> str:
@@ -55,6 +60,11 @@ def spell(value: Any, quantity: Quantity | None = None) -> str:
     return repr(float(value)) if unit == "1" else f"{float(value)!r} {unit}"
 
 
+def listed(names: str | Iterable[str]) -> list[str]:
+    """Texts as a list; one text is a list of one."""
+    return [names] if isinstance(names, str) else list(names)
+
+
 def assignments_of(given: Settings, known: Callable[[], Mapping[str, Quantity]]) -> list[str]:
     """What is set as texts "NAME=VALUE".
 
@@ -63,6 +73,6 @@ def assignments_of(given: Settings, known: Callable[[], Mapping[str, Quantity]])
         known: tells the quantity of each name that may be set; asked where values have names
     """
     if not isinstance(given, Mapping):
-        return list(given)
+        return listed(given)
     quantities = known()
     return [f"{name}={spell(value, quantities.get(name))}" for name, value in given.items()]

@@ -44,7 +44,7 @@ def _lines(scenario: Scenario) -> Iterator[str]:
         values = _part_values(part, cls)
         sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
         uncertainties = _uncertainties(scenario, part, cls)
-        yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources, more=uncertainties)
+        yield from _table(f"part.{_key(part.name)}", {"type": part.type} | values, sources=sources, more=uncertainties)
     yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(_nets(scenario.spec.connections), 1)})
     for instrument in scenario.instruments:
         yield from _table(f"sensors.{_key(instrument.name)}", _sensor(instrument, scenario.readable()))

@@ -233,3 +233,55 @@ def test_commands_are_options_one_call_and_printing() -> None:
                 if ours and name not in MAY_KNOW and not room:
                     problems.append(f"{path.name}: {name}")
     assert not problems
+
+
+H = "helical_two_stage"
+
+
+@pytest.mark.parametrize(
+    ("ask", "told"),
+    [
+        (lambda: gh.rating(H, {"oil.T": "95 degC", "gears.T": "99 degC"}), "one at a time"),
+        (lambda: gh.rating(H, "oil.T=95 degC", set=["room.T=30 degC"]), "room.T is set, and varied"),
+        (lambda: gh.export(H, "a.fmu", fmi=1), "there is FMI 2 and FMI 3"),
+        (lambda: gh.steady(None), "is no rig"),
+        (lambda: gh.steady(H).save("rig.toml"), "JSON is written"),
+        (lambda: gh.map(H, grid="2x2").save_picture("map.pdf"), "unknown kind of picture"),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path, monkeypatch, ask: Callable[[], object], told: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(gh.GearheatError, match=told):
+        ask()
+    assert not list(tmp_path.iterdir())
+
+
+def test_one_text_stands_for_a_list_of_one() -> None:
+    assert gh.steady(H, "room.T=30 degC")["room.T"] == pytest.approx(303.15)
+    assert np.allclose(gh.map(H, grid="2x2", output="oil.T").columns["oil.T"], gh.map(H, grid="2x2").columns["oil.T"])
+    assert list(gh.map(H, grid="2x2", output=["oil.T", "oil.T"]).columns)[-1] == "oil.T"
+    assert gh.design(H, "cooling.A", "oil.T=50 degC")["oil.T"] == pytest.approx(323.15)
+
+
+def test_a_rig_whose_parts_have_other_letters_is_saved_and_read_again(tmp_path: Path, rig: gh.Rig) -> None:
+    text = rig.save(tmp_path / "a.toml").read_text(encoding="utf-8")
+    (other := tmp_path / "b.toml").write_text(text.replace("part.foot", 'part."Fuß"').replace('"foot.', '"Fuß.'))
+    again = gh.load(other).save(tmp_path / "c.toml")
+    assert gh.steady(again)["oil.T"] == pytest.approx(gh.steady(rig)["oil.T"])
+
+
+def test_losses_of_a_state_are_the_power_between_its_shafts() -> None:
+    state = gh.steady("e_axle")
+    assert sum(state.losses().values()) == pytest.approx(state["efficiency.P_loss"], rel=1e-6)
+    assert gh.steady(H, {"input.w": "0 rpm"}).headlines[0].startswith("loss")
+    assert "between the shafts, in all loss" in gh.steady("drum_motor").headlines[0]
+
+
+def test_a_thermostat_starts_closed_in_the_cold(tmp_path: Path) -> None:
+    """Its threshold is no body: it does not start at the temperature of the room, and is not the hottest of them."""
+    rig = gh.load("wind_turbine")
+    (relay,) = [p.name for p in rig.scenario.spec.parts if p.type == "Thermostat"]
+    (duty := tmp_path / "duty.csv").write_text("time [s],nacelle.T [degC]\n0,-10\n600,-10\n")
+    run = gh.simulate(rig, duty, set={f"{relay}.relay": "true"})
+    assert run[f"{relay}.T_switch"][0] > 300.0 > run["sump.T"][0]
+    assert run["cooler.share"].max() < 0.01

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from ...scenarios.shipped import RIGS
-from ..diagnose.api import diagnose
 from ..compare.published import campaign
+from ..diagnose.api import diagnose
 from ..show.console import note
 from ..watch.api import watch
 from .harness import TABLES

@@ -283,5 +283,7 @@ def _print_teeth(felt: gh.TeethFelt) -> None:
 
 def _print_rating(powers: gh.Rating) -> None:
     console.table(powers.title, *powers.table())
+    if powers.beyond:
+        console.note(powers.beyond)
     for place, reason in powers.without_result.items():
         console.note(f"{place}: {reason}")

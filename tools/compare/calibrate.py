@@ -16,7 +16,7 @@ from ...fmu.play import Player
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, Problems, SolveError
 from ...model.units import from_si, show_unit, to_si
-from ...scenarios.given import RigLike, Settings, scenario_of
+from ...scenarios.given import RigLike, Settings, listed, scenario_of
 from ...scenarios.measured.study import Measured, read_study
 from ..show.console import note
 from ..show.display import Answer
@@ -58,7 +58,7 @@ class Calibration(Answer):
 
 def calibrate(
     rig: RigLike,
-    free: Sequence[str],
+    free: str | Sequence[str],
     *,
     grid: str | None = None,
     bounds: Sequence[str] = (),
@@ -84,7 +84,7 @@ def calibrate(
         >>> import gearheat as gh
         >>> gh.calibrate("planetary", ["cooling.A"], grid="PAOR-16")  # doctest: +SKIP
     """
-    scenario = adjust(scenario_of(rig), set, named=free)
+    scenario = adjust(scenario_of(rig), set, named=(free := listed(free)))
     study = read_study(scenario, data, card)
     if study is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")

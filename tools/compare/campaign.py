@@ -8,6 +8,7 @@ import tempfile
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context
 from typing import Any
@@ -18,7 +19,7 @@ from ...fmu.apart import begin_worker
 from ...fmu.batch_library import cores
 from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
-from ...model.errors import ScenarioError
+from ...model.errors import ScenarioError, SolveError
 from ...model.run.point import point
 from ...model.run.result import Outside
 from ...model.run.rows import evaluate, outside
@@ -178,6 +179,11 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
             for _ in range(count):
                 pool.submit(int)
         yield pool
+    except BrokenProcessPool:
+        raise SolveError(
+            "a process of its own for each core could not be started. In a script, put what runs under"
+            ' if __name__ == "__main__":, or run one test at a time with jobs=1.'
+        ) from None
     except KeyboardInterrupt:
         for worker in active_children():  # what they have finished is kept
             worker.kill()

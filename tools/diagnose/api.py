@@ -12,7 +12,7 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from ...scenarios.given import RigLike
+from ...scenarios.given import RigLike, listed
 from ..show.console import PICTURES, as_json, file_of, progress_bar, write
 from ..show.display import Display
 from ..show.picture import Picture
@@ -220,7 +220,7 @@ def diagnose(
 def plan(
     rig: RigLike,
     *,
-    separate: Sequence[str] = (),
+    separate: str | Sequence[str] = (),
     card: File | None = None,
     points: File | None = None,
     library: Files = None,
@@ -247,7 +247,7 @@ def plan(
         >>> import gearheat as gh
         >>> gh.plan("planetary", separate=["losses.churning", "losses.seals"])  # doctest: +SKIP
     """
-    request = PlanRequest(rig, tuple(separate), _path(card), _path(points), _paths(library), reference)
+    request = PlanRequest(rig, tuple(listed(separate)), _path(card), _path(points), _paths(library), reference)
     problems, picture = [], _path(out)
     if picture is not None and picture.suffix.lower() not in PICTURES:
         kinds = " or ".join(PICTURES)

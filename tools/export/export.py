@@ -11,7 +11,7 @@ from ...fmu.description import Owner
 from ...model.errors import FmuError, Problems, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
@@ -38,7 +38,7 @@ def export(
     parameters_source: bool = True,
     extras: str | Path | None = None,
     uncertainty: bool | str = False,
-    constant: Sequence[str] = (),
+    constant: str | Sequence[str] = (),
     real_time: str | None = None,
     ssp: Sequence[str] = (),
 ) -> Exported:
@@ -73,6 +73,8 @@ def export(
         >>> import gearheat as gh
         >>> gh.export("planetary", "planetary.fmu", fmi=3)  # doctest: +SKIP
     """
+    if fmi not in (2, 3) or isinstance(fmi, float):
+        raise ScenarioError(f"--fmi {fmi}: there is FMI 2 and FMI 3. Give one of the two numbers.")
     if uncertainty not in (False, True, "linear", "mixture"):
         raise ScenarioError(f"--uncertainty {uncertainty}: is neither linear nor mixture.")
     told = {"--author": author, "--license": license, "--model-version": model_version}
@@ -94,7 +96,7 @@ def export(
         audit=audit,
         uncertainty=bool(uncertainty),
         mixture=uncertainty == "mixture",
-        constants=constant,
+        constants=listed(constant),
         real_time=None if real_time is None else _task(real_time),
     )
     return export_system(ssp, asked) if ssp else export_rig(asked)

@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ...model.errors import DataError
 from ...model.units import from_si, in_unit, show_unit
-from .console import as_json, cell, write
+from .console import as_json, cell, plottable, write
+from .endings import fitting
 from .picture import Picture
 
 if TYPE_CHECKING:
@@ -89,6 +90,9 @@ class Display:
         """What `save` writes: the JSON object."""
         return as_json(self.as_dict())
 
+    #: What that is, by its ending.
+    kind: ClassVar[str] = "JSON"
+
     def save(self, path: str | Path) -> Path:
         """Write the result to a file: its JSON object, or all rows as CSV where it is columns of numbers.
 
@@ -96,8 +100,9 @@ class Display:
             path: file to write
 
         Raises:
-            DataError: it cannot be written
+            DataError: it cannot be written, or its ending is that of something else
         """
+        fitting(Path(path), self.kind, "save")
         write(Path(path), self.file_text())
         return Path(path)
 
@@ -109,8 +114,11 @@ class Display:
 
         Raises:
             DataError: it cannot be written
+            ScenarioError: its ending is none of a picture
         """
         from .drawing import write_picture
+
+        plottable(Path(path), "save_picture")
 
         if (picture := self.drawing()) is None:
             return None
@@ -148,6 +156,8 @@ class Answer(Display):
 
 class Columns(Display):
     """Base of results that are columns of numbers."""
+
+    kind = "a table"
 
     def titled(self) -> Mapping[str, np.ndarray]:
         """Columns of all rows in the units shown to a person, by their titles."""

@@ -12,7 +12,7 @@ from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, evaluate_unchanged, least_change, rank
 from ...model.units import from_si, show_unit
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
+from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of, spell
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import HEAD, Answer, Quantities
 from .settings import adjust, find_unchecked, flat_of
@@ -95,7 +95,7 @@ class DesignAnswer(Quantities, Answer):
 
 def design(
     rig: RigLike,
-    free: Sequence[str] = (),
+    free: str | Sequence[str] = (),
     target: Settings = (),
     *,
     set: Settings = (),
@@ -122,7 +122,7 @@ def design(
     """
     scenario = scenario_of(rig)
     part, names = _alternatives(scenario, among)
-    targets, assignments = list(target), assignments_of(set, scenario.settable)
+    free, targets, assignments = listed(free), listed(target), assignments_of(set, scenario.settable)
     if isinstance(target, Mapping):
         known = scenario.readable()
         targets = [_format_target(name, value, known.get(name)) for name, value in target.items()]

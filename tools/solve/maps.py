@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ...model.errors import ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.run.design import design
 from ...model.units import from_si, show_unit, text
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of
+from ...scenarios.measured.nominal import Nominal
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import Columns, optional
 from ..show.picture import Picture
@@ -117,7 +118,7 @@ def map_outputs(
     speed: str | None = None,
     torque: str | None = None,
     grid: str = "21x21",
-    output: Sequence[str] = (),
+    output: str | Sequence[str] = (),
     set: Settings = (),
 ) -> Map:
     """Oil temperature, loss and efficiency over speed and torque.
@@ -142,7 +143,7 @@ def map_outputs(
     paths = driving(scenario)
     ranges = zip(paths, (speed, torque), strict=True)
     vary = [f"{path}={written or usual_range(scenario, path)}" for path, written in ranges]
-    shows = list(output) or leading_outputs(scenario)
+    shows = list(dict.fromkeys(listed(output))) or leading_outputs(scenario)
     assignments = assignments_of(set, scenario.settable)
     plan = plan_sweep(Request(scenario, vary, None, grid=grid, assignments=assignments, outputs=shows))
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
@@ -170,17 +171,28 @@ class Rating(Columns):
         limit: what is kept
         columns: title -> values at all points (n,): room, speed, torque, power; nan where there is no result
         without_result: point -> why it has none
+        end: shaft end whose power it is
+        plate: its power at the operating point of the rig file [kW]
     """
 
     rig: str
     limit: str
     columns: Mapping[str, np.ndarray]
     without_result: Mapping[str, str]
+    end: str
+    plate: float
 
     @property
     def title(self) -> str:
-        """The rig and the limit."""
-        return f"{self.rig}: thermal power [kW] at {self.limit}"
+        """The rig, the end and the limit."""
+        return f"{self.rig}: thermal power at {self.end} [kW] at {self.limit}"
+
+    @property
+    def beyond(self) -> str:
+        """How many points lie above what the rig file is for; empty where none does."""
+        above, n = int((self.columns["power [kW]"] > self.plate).sum()), len(self.columns["power [kW]"])
+        said = f"{above} of {n} points lie above the {self.plate:.4g} kW of the rig file, for which alone its teeth,"
+        return f"{said} shafts and bearings are meant: thermal power is no mechanical rating" if above else ""
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Power, rooms down and speeds across."""
@@ -197,6 +209,8 @@ class Rating(Columns):
             "schema": "gearheat.rating/1",
             "rig": self.rig,
             "limit": self.limit,
+            "end": self.end,
+            "power_of_file_kW": self.plate,
             "out": None,
             "rows": [dict(zip(self.columns, map(float, row), strict=True)) for row in rows],
             "without_result": dict(self.without_result),
@@ -239,10 +253,15 @@ def rating(
     if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
     varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
+    named = {text.partition("=")[0].strip() for text in assignments_of(set, scenario.settable)}
+    varies = {place: "--room", driven: "--speed"}
+    Problems(f"{n} is set, and varied. Give its range by {o}." for n, o in varies.items() if n in named).check()
     setting = adjust(scenario, set, named=[place, driven])
     flat = flat_of(setting)
-    (written,) = [limit] if isinstance(limit, str) else assignments_of(limit, scenario.readable)
-    aim = parse_assignments(flat, [written])
+    limits = assignments_of(limit, scenario.readable)
+    if len(limits) != 1:
+        raise ScenarioError(f"--limit: {len(limits)} are given. Rate for one at a time, and take the lower power.")
+    written, aim = limits[0], parse_assignments(flat, limits)
     axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
     values = sampling.lay_grid(axes, grid)
     powers, torques = np.full(len(values), np.nan), np.full(len(values), np.nan)
@@ -263,4 +282,6 @@ def rating(
         raise SolveError([f"{point}: {reason}" for point, reason in list(why.items())[:3]])
     columns = [*(from_si(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))), torques, powers / 1000]
     head = [f"{place} [degC]", f"{driven} [rpm]", f"{torque} [N.m]", "power [kW]"]
-    return Rating(scenario.name, written, dict(zip(head, columns, strict=True)), why)
+    end = torque.partition(".")[0]
+    plate = abs(Nominal(setting).value(f"{end}.P")) / 1000
+    return Rating(scenario.name, written, dict(zip(head, columns, strict=True)), why, end, plate)

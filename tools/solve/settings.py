@@ -14,7 +14,7 @@ from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec
 from ...scenarios.film_map import find_map, names_map
-from ...scenarios.given import Settings, assignments_of
+from ...scenarios.given import Settings, assignments_of, listed
 from ...scenarios.housing import oil_problems
 from ...scenarios.scenario import DRIVES, Scenario, check_drives, deduce_drive, parse_assignments
 from ...scenarios.write import SET
@@ -79,7 +79,8 @@ def refuse_given(assignments: Settings, given: Iterable[str], duty: str) -> None
     Raises:
         ScenarioError: one problem for each such name
     """
-    both = {_name(text) for text in assignments} & set(given)
+    names = assignments if isinstance(assignments, Mapping) else listed(assignments)
+    both = {_name(text) for text in names} & set(given)
     Problems(f"{name} is set, and {duty} gives it over time. Take one of them out." for name in sorted(both)).check()
 
 

@@ -17,7 +17,7 @@ from ...fmu.batch import Status
 from ...model.errors import ScenarioError, SolveError
 from ...model.files import flows
 from ...model.units import from_si, show_unit
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
+from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of, spell
 from ..show.console import counting, note
 from ..show.display import Display, optional
 from ..show.picture import Picture
@@ -110,7 +110,7 @@ class Sweep(Display):
 
 def sweep(
     rig: RigLike,
-    vary: Mapping[str, Sequence[Any]] | Sequence[str],
+    vary: Mapping[str, Sequence[Any]] | str | Sequence[str],
     *,
     out: str | Path | None = None,
     sample: int | None = None,
@@ -158,7 +158,7 @@ def sweep(
         5
     """
     scenario = scenario_of(rig)
-    texts, counts = list(vary), []
+    texts, counts = listed(vary), []
     if isinstance(vary, Mapping):
         known = scenario.settable()
         if odd := [n for n, ends in vary.items() if len(ends) not in (2, 3)]:
