@@ -32,14 +32,18 @@ SWITCH = 0.8
 SEASONS = 12
 #: Spans of time of which the logs in question tell the knobs, about.
 SPANS = 16
-#: Samples of a window that count, at least.
+#: Samples of a window that count, at least, and windows below which logs are short.
 SHORTEST = 40
+FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
 #: Correlations of errors are summed over so many samples at most, and down to so much.
 MEMORY = 36
 #: Windows by which it is told whether logs hold means.
 TIMED = 24
+#: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
+STILL = 0.03
+STEPPING = 0.5
 #: What lasts longer is a matter of windows and years.
 CORRELATED = 0.05
 #: Length of a year in time that is no calendar's [s].
@@ -106,8 +110,9 @@ def _pass(progress: Progress, logs: str, n: int) -> Callable[[float], None]:
 
 
 def window_length(logs: Sequence[Log]) -> int:
-    """Samples of a window that count, so that logs in question have as many windows as spans."""
-    return int(np.clip(sum(log.n for log in logs) // SPANS, SHORTEST, WINDOW))
+    """Samples of a window that count: of short logs so many that these have as many windows as spans."""
+    n = sum(log.n for log in logs)
+    return WINDOW if n >= FEW * WINDOW else int(np.clip(n // SPANS, SHORTEST, WINDOW))
 
 
 def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
@@ -167,7 +172,10 @@ def fleet(
 
 
 def _of_moments(own: Filter, data: Windows, z: np.ndarray) -> bool:
-    """Whether windows hold what was read at moments, not means, by how well the filter foresees some of them."""
+    """Whether windows hold what was read at moments: their inputs step, and the filter foresees them better so."""
+    changes, whole = np.abs(np.diff(data.given, axis=1)), np.ptp(data.given[data.there], axis=0)
+    if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() < STEPPING:
+        return False  # they change all the time: a wider error of each would only hide what else is wrong
     some, logs = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int), []
     for own.moments in (False, True):
         logs.append(log_likelihood(own.run(data.some(some), z[some], slopes=False)))
