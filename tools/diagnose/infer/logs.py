@@ -37,13 +37,13 @@ SHORTEST = 40
 FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
-#: Correlations of errors are summed over so many samples at most, and down to so much.
-MEMORY = 36
 #: Windows by which it is told whether logs hold means.
 TIMED = 24
 #: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
 STILL = 0.03
 STEPPING = 0.5
+#: Correlations of errors are summed over so many samples at most, and down to so much.
+MEMORY = 36
 #: What lasts longer is a matter of windows and years.
 CORRELATED = 0.05
 #: Length of a year in time that is no calendar's [s].
