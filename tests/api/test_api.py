@@ -285,3 +285,9 @@ def test_a_thermostat_starts_closed_in_the_cold(tmp_path: Path) -> None:
     run = gh.simulate(rig, duty, set={f"{relay}.relay": "true"})
     assert run[f"{relay}.T_switch"][0] > 300.0 > run["sump.T"][0]
     assert run["cooler.share"].max() < 0.01
+
+
+def test_results_print_the_heads_of_their_columns() -> None:
+    assert repr(gh.rating(H, "oil.T=95 degC", grid="2x2")).splitlines()[1].split()[:2] == ["room.T", "[degC]"]
+    assert str(gh.losses(H)).splitlines()[1].startswith("P_mesh_W")
+    assert str(gh.plan(H)).startswith("helical_two_stage: which causes a campaign can tell apart\nexperiment")

@@ -63,10 +63,14 @@ class Display:
     def __repr__(self) -> str:
         head, rows = self.table()
         texts = [[cell(value) for value in row] for row in rows[:LINES]]
-        widths = [max(len(line[i]) for line in [list(head), *texts]) for i in range(len(head))]
+        texts = texts if tuple(head) == HEAD or not head else [list(head), *texts]
+        widths = [max((len(line[i]) for line in texts), default=0) for i in range(len(head))]
         lines = ["  ".join(text.ljust(w) for text, w in zip(line, widths, strict=True)).rstrip() for line in texts]
         more = [f"... {len(rows) - LINES} more"] if len(rows) > LINES else []
         return "\n".join([self.title, *lines, *more])
+
+    def __str__(self) -> str:
+        return repr(self)
 
     def _repr_html_(self) -> str:
         from .drawing import svg
