@@ -341,3 +341,12 @@ def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:
     assert group is not None, "what cannot be seen is like everything"
     assert group.causes[0] == TRUE
     assert UNEXPLAINED not in group.causes
+
+
+def test_calibration_goes_no_further_than_what_is_possible(clean: tuple[Setting, Found]) -> None:
+    data = clean[1].problem.data
+    names = [n.name for n in data.nuisances]
+    nuisance = data.nuisances[k := names.index("radiation")]
+    base = {path: data.plant.p[data.plant.place[path]] for path in nuisance.paths}
+    low, high = data.limits[:, k]
+    assert low == -6.0 and max(base.values()) * np.exp(nuisance.sd * high) == pytest.approx(1.0)

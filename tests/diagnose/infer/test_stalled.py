@@ -21,7 +21,7 @@ NOISE: Any = SimpleNamespace(covariance=np.eye(5), log_prior=0.0)
 class Turning:
     """Readings that fall again behind a size, and never get as far as they are measured."""
 
-    nz, m, own, data = 1, 5, slice(0, 5), SimpleNamespace(m=5)
+    nz, m, own, data = 1, 5, slice(0, 5), SimpleNamespace(m=5, limits=np.array([[-6.0], [6.0]]))
     alike, same = np.ones((5, 5)), np.eye(5)
     measured = 4.0 * BY_T
 
