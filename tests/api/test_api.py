@@ -119,6 +119,8 @@ def test_frames_of_pandas_go_in_and_out(rig: gh.Rig, duty: Path) -> None:
     run, by_file = gh.simulate(rig, pandas.read_csv(duty)), gh.simulate(rig, duty)
     np.testing.assert_array_equal(run["oil.T"], by_file["oil.T"])
     assert run.to_pandas()["oil.T [degC]"].iloc[0] == pytest.approx(20.0)
+    given = run.to_pandas()[["carrier.w [rpm]", "carrier.tau [N.m]", "room.T [degC]"]]
+    assert gh.simulate(rig, given)["oil.T"][-1] == pytest.approx(run["oil.T"][-1], abs=1e-3)
     assert "oil.T" in set(gh.steady(rig).to_pandas()["name"])
 
 

@@ -174,13 +174,13 @@ class TimeSeries(Columns):
 
 @contextmanager
 def duty_file(duty: Duty) -> Iterator[Path]:
-    """The file of a duty; of a DataFrame one that lasts as long as it is needed."""
+    """The file of a duty; of a DataFrame, whose index may be the time, one that lasts as long as it is needed."""
     if not hasattr(duty, "to_csv"):
         yield Path(duty)
         return
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "duty.csv"
-        duty.to_csv(path, index=False)
+        duty.to_csv(path, index=duty.index.name is not None)
         yield path
 
 
