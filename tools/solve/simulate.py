@@ -178,9 +178,10 @@ def duty_file(duty: Duty) -> Iterator[Path]:
     if not hasattr(duty, "to_csv"):
         yield Path(duty)
         return
+    frame: Any = duty
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "duty.csv"
-        duty.to_csv(path, index=duty.index.name is not None)
+        frame.to_csv(path, index=frame.index.name is not None)
         yield path
 
 

@@ -17,7 +17,7 @@ SEASON = 0.25
 WINDOW = 0.25
 #: How many deviations this expectation counts for.
 COUNTS = 2.0
-#: Share of the covariance of seasons by which a season differs from itself.
+#: Least share of the covariance of seasons by which a season differs from itself at another time.
 SAME = 1e-6
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
@@ -71,11 +71,11 @@ class Levels:
     season_mean: np.ndarray
     season_covariance: np.ndarray
 
-    def within(self, season: int) -> Levels:
-        """The same where a season of the first machine goes on: it has no deviation of its own."""
+    def within(self, season: int, share: float) -> Levels:
+        """The same where a season of the first machine goes on: it deviates by a share of what another one does."""
         mean, covariance = self.mean.copy(), self.covariance.copy()
         mean[0], covariance[0] = self.season_mean[season], self.season_covariance[season]
-        return replace(self, mean=mean, covariance=covariance, season=SAME * self.season)
+        return replace(self, mean=mean, covariance=covariance, season=max(share, SAME) * self.season)
 
 
 def first_levels(sd: np.ndarray, machines: int) -> Levels:

@@ -63,7 +63,7 @@ class Fleet:
         levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
         length: samples of a window that count
-        seasons: machine and number of a season by the calendar -> number of that one in the levels
+        seasons: machine and number of a season by the calendar -> number of that one in the levels, its middle time [s]
     """
 
     filter: Filter
@@ -72,21 +72,24 @@ class Fleet:
     levels: Levels
     share: float
     length: int
-    seasons: Mapping[tuple[int, int], int] = field(default_factory=dict)
+    seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
         """The same with one of its machines in question, without its past."""
         mean, covariance = (a[[machine]] for a in (self.levels.mean, self.levels.covariance))
         levels = replace(self.levels, mean=mean, covariance=covariance)
-        seasons = {(0, number): n for (one, number), n in self.seasons.items() if one == machine}
+        seasons = {(0, number): known for (one, number), known in self.seasons.items() if one == machine}
         return replace(self, past=self.past.some(np.zeros(0, dtype=int)), levels=levels, seasons=seasons)
 
     def going_on(self, logs: Sequence[Log]) -> Fleet:
-        """The same for logs in question that lie in one season of the machine's healthy ones."""
+        """The same for logs in question in one season of the machine's healthy ones, the nearer the more so."""
         ends = np.array([log.time[k] for log in logs for k in (0, -1)])
         there = set(season_of(ends, True).tolist()) if all(log.dated for log in logs) else set[int]()
         known = self.seasons.get((0, min(there))) if len(there) == 1 else None
-        return self if known is None else replace(self, levels=self.levels.within(known))
+        if known is None:
+            return self
+        number, time = known
+        return replace(self, levels=self.levels.within(number, abs(float(ends.mean()) - time) / (YEAR / 4)))
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
@@ -167,7 +170,8 @@ def fleet(
     share = independent(passed)
     levels = estimate(said.times(share), season, machine_of, begun)
     dated = all(log.dated for log in logs)
-    seasons = {(int(one), int(number)): n for n, (one, number) in enumerate(keys) if dated}
+    times = [float(past.time[season == n].mean()) for n in range(len(keys))]
+    seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys) if dated}
     return Fleet(own, found, past.some(machine == 0), levels, share, length, seasons)
 
 
