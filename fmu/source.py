@@ -150,7 +150,7 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_preset_choice": [p.choice for p in presets],
         "model_preset_item": [p.item for p in presets],
         "model_preset_parameter": [p.parameter for p in presets],
-        "model_follows_room": [int(v.quantity.unit == "K" and v.name.endswith(".T")) for v in table.of("state")],
+        "model_follows_room": [int(v.name in flat.bodies) for v in table.of("state")],
     }
     numbers = {
         "model_preset_value": [p.value for p in presets],

@@ -169,7 +169,7 @@ class FlatModel:
         """Path -> (kind, position), kind one of "state", "input", "parameter", "output"."""
         return {q.name: (kind, i) for kind, group in self._groups.items() for i, q in enumerate(group)}
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[str, ...]:
         """The states that are temperatures of bodies; a threshold that moves is none."""
         return tuple(q.name for q in self.states if q.unit == "K" and q.name.endswith(".T"))

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ..core.component import SOUND, Component, Faults
-from ..core.declare import Parameter, Port, list_declared
+from ..core.declare import Output, Parameter, Port, list_declared
 from ..errors import ScenarioError
 from ..files import tables
 from ..parts.ports import Flange, HeatPort, Lubricant, OilLevel, ShaftReading
@@ -181,6 +181,11 @@ class Roles:
     def scaled(self, *parts: str) -> tuple[str, ...]:
         """Paths of the parameters that scale what the parts do."""
         return tuple(f"{p}.{key}" for p in parts for key in self.spec.types[self.spec.part(p).type].scale)
+
+
+def takes_power(kind: type[Component]) -> bool:
+    """Whether a part tells the power that it takes from a shaft in the machine: a pump, a jet, an added loss."""
+    return "P" in list_declared(kind, Output) and "shaft" in list_declared(kind, Port)
 
 
 def faults_of(kind: type[Component]) -> Faults:

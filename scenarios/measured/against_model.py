@@ -111,13 +111,14 @@ def unheld(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[str]:
         jumps = np.fmax(jumps, np.abs(np.diff(values)) / max(np.nanmax(values), 1e-9))
     after = np.sort(np.argsort(-jumps, kind="stable")[:JUMPS]) + 1
     states = _states(campaign, nominal, oils, np.unique([after - 1, after]))
-    pairs = [(k - 1, k) for k in after.tolist() if {k - 1, k} <= states.keys()]
+    rows = np.array([k for k in after.tolist() if {k - 1, k} <= states.keys()], dtype=int)
     found: dict[str, tuple[bool, float, float]] = {}
     for sensor in (s for s in campaign.read if SI[s.kind] == "K"):
-        read = np.array([np.diff(campaign.values[sensor.name][list(pair)])[0] for pair in pairs])
-        model = np.array([states[k][sensor.reads] - states[j][sensor.reads] for j, k in pairs])
-        if np.isfinite(read).all() and pairs and np.mean(np.abs(model)) > JUMP_K:
-            values, usual = campaign.values[sensor.name], float(np.mean(np.abs(model)))
+        values = campaign.values[sensor.name]
+        read = values[rows] - values[rows - 1]
+        model = np.array([states[k][sensor.reads] - states[k - 1][sensor.reads] for k in rows.tolist()])
+        usual = float(np.mean(np.abs(model))) if len(rows) else 0.0
+        if np.isfinite(read).all() and usual > JUMP_K:
             creeping = np.nanmean(np.diff(values) ** 2) < CREEPING * 2.0 * np.nanvar(values)
             warming = np.nanmax(values) - np.nanmin(values) > usual  # a probe of the room does not
             behind = bool(creeping and warming and read @ model < FOLLOWED * (model @ model))

@@ -84,7 +84,8 @@ def calibrate(
         >>> import gearheat as gh
         >>> gh.calibrate("planetary", ["cooling.A"], grid="PAOR-16")  # doctest: +SKIP
     """
-    scenario = adjust(scenario_of(rig), set, named=(free := listed(free)))
+    free = listed(free)
+    scenario = adjust(scenario_of(rig), set, named=free)
     study = read_study(scenario, data, card)
     if study is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")

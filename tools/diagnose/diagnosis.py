@@ -24,7 +24,7 @@ from .infer.screen import changes, samples
 from .infer.weigh import Options, weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
-from .report.extension import calibrated, cuts, rig_file
+from .report.extension import calibrated, rig_file
 from .report.words import with_words
 from .request import Inputs, PlanInputs, unknown_causes
 from .setting import Setting, setting
@@ -92,7 +92,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     reference, wrong = inputs.reference, decision.verdict != "consistent"
     rows, isolability = pictures.rows(found, leader), judge_design(Effects(found.first.candidates, found.first.white))
     seen = "thermometers" if all(s.kind.endswith("_temp") for s in data.read) else "readings"
-    extended = rig_file(made, found, leader)
+    extended, cut = rig_file(made, found, leader)
     blind = {one.cause: f"not visible in these {seen}" for one in isolability if one.visible < BLIND}
     return Findings(
         **compose.common(made, found, decision),
@@ -128,7 +128,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         extended_rig=extended,
         predictions=predict(found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in {**blind, **inputs.invisible}.items()),
-        warnings=(*inputs.warnings, *cuts(extended)),
+        warnings=(*inputs.warnings, *(f"in the extended rig {line}" for line in cut)),
     )
 
 

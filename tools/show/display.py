@@ -43,6 +43,9 @@ def optional(package: str) -> Any:
 class Display:
     """Base of results. A result says its title, its table and its JSON object; everything else follows."""
 
+    #: What `save` writes, a key of `ENDINGS`.
+    kind: ClassVar[str] = "JSON"
+
     @property
     def title(self) -> str:
         """What the result is of, in a few words."""
@@ -94,9 +97,6 @@ class Display:
         """What `save` writes: the JSON object."""
         return as_json(self.as_dict())
 
-    #: What that is, by its ending.
-    kind: ClassVar[str] = "JSON"
-
     def save(self, path: str | Path) -> Path:
         """Write the result to a file: its JSON object, or all rows as CSV where it is columns of numbers.
 
@@ -123,7 +123,6 @@ class Display:
         from .drawing import write_picture
 
         plottable(Path(path), "save_picture")
-
         if (picture := self.drawing()) is None:
             return None
         write_picture(Path(path), picture)

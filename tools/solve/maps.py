@@ -17,7 +17,7 @@ from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from . import sampling
-from .settings import adjust, flat_of
+from .settings import adjust, flat_of, names_set
 from .steady import RATED, baths, conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
@@ -253,9 +253,8 @@ def rating(
     if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
     varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
-    named = {text.partition("=")[0].strip() for text in assignments_of(set, scenario.settable)}
-    varies = {place: "--room", driven: "--speed"}
-    Problems(f"{n} is set, and varied. Give its range by {o}." for n, o in varies.items() if n in named).check()
+    ways, both = {place: "--room", driven: "--speed"}, names_set(set)
+    Problems(f"{n} is set, and varied. Give its range by {way}." for n, way in ways.items() if n in both).check()
     setting = adjust(scenario, set, named=[place, driven])
     flat = flat_of(setting)
     limits = assignments_of(limit, scenario.readable)

@@ -79,8 +79,7 @@ def refuse_given(assignments: Settings, given: Iterable[str], duty: str) -> None
     Raises:
         ScenarioError: one problem for each such name
     """
-    names = assignments if isinstance(assignments, Mapping) else listed(assignments)
-    both = {_name(text) for text in names} & set(given)
+    both = names_set(assignments) & set(given)
     Problems(f"{name} is set, and {duty} gives it over time. Take one of them out." for name in sorted(both)).check()
 
 
@@ -167,6 +166,11 @@ def _list_filled_sources(scenario: Scenario, assignments: Sequence[str]) -> dict
         if (part := _name(text)) in parts:
             found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
     return {path: source for path, source in found.items() if path not in single}
+
+
+def names_set(assignments: Settings) -> set[str]:
+    """The names of what is set."""
+    return {_name(text) for text in listed(assignments)}
 
 
 def _name(assignment: str) -> str:

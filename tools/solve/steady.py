@@ -11,6 +11,7 @@ import numpy as np
 from ...model.core.declare import Port, State, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
+from ...model.machines.roles import takes_power
 from ...model.run.result import Outside, Result
 from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
 LARGE = 500
 #: Speed or torque over that of the rig file from which on it may be a slip [1].
 FAR = 5.0
-#: Types of parts whose power from a shaft goes into the oil.
-INTO_OIL = ("OilPump", "GearJet")
 #: Share by which losses of the parts and between the shafts differ where both are told: that of a motor is inside.
 APART = 0.01
 #: Temperature of the oil up to which gear units are rated thermally [K].
@@ -266,7 +265,7 @@ def loss_names(scenario: Scenario, names: Iterable[str]) -> dict[str, list[str]]
     for name in every:
         part, _, key = name.rpartition(".")
         whole = f"{part}.P_loss" in every
-        taken = key == "P" and scenario.types[part].__name__ in INTO_OIL
+        taken = key == "P" and takes_power(scenario.types[part])
         if part not in meters and (taken or key == "P_loss" or (key.startswith("P_loss_") and not whole)):
             found.setdefault(part, []).append(name)
     return found

@@ -73,7 +73,7 @@ def test_what_is_not_measured_is_drawn_against_the_running_order(made: Made) -> 
 
 
 def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tmp_path: Path) -> None:
-    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h))
+    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h)[0])
     rig = load(path)
     theta = made.h.fit.look.acting[0].formula.theta(made.h.fit.look.acting[0].t)
     assert rig.spec.part("found_churning").values["P_ref"] == pytest.approx(theta["P_ref"])
@@ -86,7 +86,7 @@ def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tm
 
 def test_the_extended_rig_says_how_uncertain_the_data_leave_it(made: Made, tmp_path: Path) -> None:
     """Every parameter by the posterior: of a factor its logarithm's, of the cause its size's, whatever goes with it."""
-    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h))
+    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h)[0])
     rig = load(path)
     sd, problem = np.sqrt(np.diag(posterior(made.found.problem, made.h)[1])), made.found.problem
     (acting,) = made.h.fit.look.acting

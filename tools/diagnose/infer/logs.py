@@ -102,8 +102,8 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
     plant = Plant(spec.flat(), paths, [s.reads for s in log.given], [s.reads for s in log.read])
-    states = ((q.unit, q.name.rpartition(".")[2]) for q in plant.flat.states)
-    noise = np.array([0.0 if unit != "K" else QUIET if name == "T" else SWITCH for unit, name in states])
+    bodies, states = plant.flat.bodies, plant.flat.states
+    noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
     return Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], noise), found
 
 
@@ -181,7 +181,8 @@ def _of_moments(own: Filter, data: Windows, z: np.ndarray) -> bool:
     if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() < STEPPING:
         return False  # they change all the time: a wider error of each would only hide what else is wrong
     some, logs = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int), []
-    for own.moments in (False, True):
+    for moments in (False, True):
+        own.moments = moments
         logs.append(log_likelihood(own.run(data.some(some), z[some], slopes=False)))
     return logs[1] > logs[0]
 

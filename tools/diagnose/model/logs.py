@@ -126,7 +126,7 @@ class Filter:
         """States at the start (N, nx), and their standard deviations (nx,)."""
         x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
         thermal = np.array([q.unit == "K" for q in self.plant.flat.states])
-        bodies = thermal & np.array([q.name.rpartition(".")[2] == "T" for q in self.plant.flat.states])
+        bodies = np.array([q.name in self.plant.flat.bodies for q in self.plant.flat.states])
         first = _first(data.read) - offset
         if (read := self.state_of >= 0).any():
             x[:, bodies] = np.where(np.isfinite(usual := means(first[:, read, None])), usual, x[:, bodies])
@@ -216,9 +216,7 @@ class Filter:
 def log_likelihood(passed: Passed) -> float:
     """Of the prediction errors, with heavy tails."""
     far = passed.error**2 / (TAILS * passed.variance)
-    return float(
-        -np.nansum((TAILS + 1) / 2 * np.log1p(far) + np.where(np.isfinite(far), np.log(passed.variance) / 2, 0))
-    )
+    return float(-np.nansum((TAILS + 1) / 2 * np.log1p(far) + np.log(passed.variance) / 2))
 
 
 def _first(read: np.ndarray) -> np.ndarray:

@@ -94,13 +94,13 @@ class Observed(Measured):
         found = np.array([[-FARTHEST], [FARTHEST]]).repeat(len(self.nuisances), axis=1)
         for k, nuisance in enumerate(self.nuisances):
             for path, exponent in nuisance.paths.items():
-                place = self.plant.place.get(path)
-                q = self.plant.flat.parameters[place] if place is not None else None
-                for side, end in enumerate((q.low, q.high) if q else ()):
-                    if 0 < end < np.inf and exponent * nuisance.sd:
-                        z = np.log(end / self.plant.p[place]) / (exponent * nuisance.sd)
-                        low, high = found[:, k]
-                        found[:, k] = (low, min(high, z)) if side == (exponent > 0) else (max(low, z), high)
+                place, slope = self.plant.place.get(path), exponent * nuisance.sd
+                if place is None or slope == 0.0:
+                    continue
+                q, value = self.plant.flat.parameters[place], self.plant.p[place]
+                ends = [np.log(end / value) / slope if 0 < end < np.inf else np.nan for end in (q.low, q.high)]
+                low, high = ends if slope > 0 else ends[::-1]
+                found[:, k] = np.fmax(found[0, k], low), np.fmin(found[1, k], high)
         return found
 
     def another(self, campaign: Campaign) -> Observed:

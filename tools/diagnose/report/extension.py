@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....model.core.declare import Output, list_declared
+from ....model.machines.roles import takes_power
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
@@ -33,7 +33,7 @@ from .phrases import name_of
 ADDED = "extra_"
 #: Here and in the extended rig: a found part can stand beside that of a new search.
 FOUND = "found_"
-#: How a line above a rig file ends that tells a value which was cut.
+#: How a line above a rig file ends that tells a value which is cut.
 CUT = "no more than this is possible."
 #: Part of a standard deviation that its derivative is taken over.
 STEP = 0.05
@@ -64,6 +64,11 @@ class Extended:
 
     scenario: Scenario
     head: tuple[str, ...]
+
+    @property
+    def cut(self) -> tuple[str, ...]:
+        """Its values that would be beyond what is possible."""
+        return tuple(line for line in self.head if line.endswith(CUT))
 
     @property
     def values(self) -> dict[str, float]:
@@ -162,7 +167,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     neutral = {f"{p.name}.{key}": value for p in form.parts for key, value in p.values.items()}
     values = {_renamed(path, names): value for path, value in (neutral | changed).items()}
     kinds = {p.name: with_parts.types[p.type] for p in parts}
-    lossy = [name for name, kind in kinds.items() if "P" in list_declared(kind, Output) and hasattr(kind, "shaft")]
+    lossy = [name for name, kind in kinds.items() if takes_power(kind)]
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     oil = {path.rpartition(".")[0] for path in changed} & {n for n, own in scenario.entries.items() if "oil" in own}
     notes = [f"{one.told}: the values below are of the rig's own oil; others change alike."] if oil and oils > 1 else []
@@ -224,8 +229,8 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
     return tuple(told)
 
 
-def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
-    """The text of the rig file: calibrated, with the causes of a hypothesis, and how uncertain the data leave both."""
+def rig_file(setting: Setting, found: Found, h: Hypothesis) -> tuple[str, tuple[str, ...]]:
+    """The text of the rig file, calibrated, with the causes of a hypothesis, how uncertain both are; what is cut."""
     data, scenario = found.problem.data.campaign, replace(setting.scenario, spec=setting.spec)
     oils = dict.fromkeys(data.oil)
     if len(oils) == 1 and (own := found.problem.data.oils.get(next(iter(oils)))):
@@ -242,13 +247,8 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
 
     x = h.fit.look.x
     uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])
-    return at(x).text(uncertain)
-
-
-def cuts(text: str) -> tuple[str, ...]:
-    """What was cut in the text of an extended rig, as warnings."""
-    lines = (line.removeprefix("# ") for line in text.splitlines() if line.startswith("# "))
-    return tuple(f"in the extended rig {line}" for line in lines if line.endswith(CUT))
+    rig = at(x)
+    return rig.text(uncertain), rig.cut
 
 
 def calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:
