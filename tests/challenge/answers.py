@@ -41,7 +41,13 @@ TIMEOUT = 1800.0
 UNNAMED = frozenset({"model.unexplained"})
 
 #: Files of a case -> option of the command.
-OPTIONS: Mapping[str, str] = {"card": "--card", "reference": "--reference", "points": "--predict"}
+OPTIONS: Mapping[str, str] = {
+    "card": "--card",
+    "reference": "--reference",
+    "points": "--predict",
+    "log": "--logs",
+    "reference_log": "--reference-logs",
+}
 
 
 def ask_command(
@@ -58,7 +64,7 @@ def ask_command(
     Raises:
         DataError: it ends with another exit code than 0, or takes too long
     """
-    words = ["diagnose", str(files["data"]), "--rig", rig, "--quick", "--seed", "0"]
+    words = ["diagnose", *([str(files["data"])] if "data" in files else []), "--rig", rig, "--quick", "--seed", "0"]
     words += ["--json", str(place / "RESULT.json")]
     for name, option in OPTIONS.items():
         if name in files:

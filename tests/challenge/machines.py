@@ -10,7 +10,7 @@ others.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -121,18 +121,22 @@ class Machine:
         faulty = [n for n in names if any(fnmatchcase(n, f.pattern) for f in FAULTS)]
         self.healthy = {n: 0.0 if n == HEAT else float(roles.value(n)) for n in (*unequal, *faulty)}
         self.unequal = {n: (UNEQUAL * rng.standard_normal(), CURVED * rng.standard_normal(3)) for n in unequal}
-        room = rng.uniform(5.0, 15.0)
-        speeds, loads = np.sort(rng.uniform(0.35, 1.0, 4)), np.sort(rng.uniform(0.2, 1.0, 4))
-        rooms = room + np.array([0.0, rng.uniform(6.0, 16.0)])
-        points = [(n, load_, T) for n in speeds for load_ in loads for T in rooms]
-        kept = rng.permutation(len(points))[: int(rng.integers(20, 33))]
-        self.points = [points[k] for k in kept]
+        self.lay_out(rng)
         self.loss = self._loss()
         by = {s.name: k for k, s in enumerate(self.sensors)}
         #: Readings of the sound machine without noise (points, sensors).
         self.sound = self.read({}, {})
         if (self.sound[:, by["T_oil"]] - self.sound[:, by["T_amb"]]).max() < WARM:
             raise ArithmeticError("too cold")
+
+    def lay_out(self, rng: np.random.Generator) -> None:
+        """Draw what is run: points of speed, load and room."""
+        room = rng.uniform(5.0, 15.0)
+        speeds, loads = np.sort(rng.uniform(0.35, 1.0, 4)), np.sort(rng.uniform(0.2, 1.0, 4))
+        rooms = room + np.array([0.0, rng.uniform(6.0, 16.0)])
+        points = [(n, load_, T) for n in speeds for load_ in loads for T in rooms]
+        kept = rng.permutation(len(points))[: int(rng.integers(20, 33))]
+        self.points = [points[k] for k in kept]
 
     def _loss(self) -> float:
         state = self._states({}, self.points[:1])
@@ -164,7 +168,10 @@ class Machine:
         self, changed: Change, errors: Change, points: Sequence[tuple[float, float, float]] | None = None
     ) -> np.ndarray:
         """Readings without noise (points, sensors)."""
-        found = self._states(changed, self.points if points is None else points)
+        return self.wrong(self._states(changed, self.points if points is None else points), errors)
+
+    def wrong(self, found: Mapping[str, np.ndarray], errors: Change) -> np.ndarray:
+        """Readings of states, with errors by sensor."""
         true = np.array([found[s.reads] for s in self.sensors]).T
         scale = np.where([s.kind == "torque" for s in self.sensors], true, 1.0)
         return np.asarray(true + scale * np.array([errors.get(s.name, 0.0) for s in self.sensors]))
@@ -176,20 +183,31 @@ class Machine:
         The hall at each point is known by its thermometer alone; tolerances and what the rig file does not know are
         uncertain.
         """
-        sd = np.array([s.repeat_sd for s in self.sensors])
-        factors = [self._effect({n: np.exp(SMALL) * self.healthy[n]}, {}) / SMALL for n in self.unequal]
-        courses = np.repeat([_course(point) for point in self.points], len(sd), axis=0).T
-        known = [UNEQUAL * factor for factor in factors]
-        known += [CURVED * course * factor for factor in factors for course in courses]
-        offsets = np.array([s.offset_sd for s in self.sensors]) / sd
-        known += [np.tile(offsets * (np.arange(len(sd)) == k), len(self.sound)) for k in range(len(sd))]
-        other = self.read({}, {}, [(n, load_, room + SMALL) for n, load_, room in self.points])
-        known += [ANY / SMALL * column for column in block_diag(*(other - self.sound) / sd)]
-        whole = np.array(known).T
+        whole = np.array([*self.uncertain(), *self.unsteady()]).T
         return np.asarray(np.linalg.cholesky(np.eye(len(whole)) + whole @ whole.T))
 
-    def _effect(self, changed: Change, errors: Change) -> np.ndarray:
-        return self.in_repeatabilities(self.read(changed, errors) - self.sound)
+    def uncertain(self) -> list[np.ndarray]:
+        """What a standard deviation of each factor and of each instrument's tolerance does to all readings."""
+        known = [UNEQUAL * deviation for deviation in self.deviations()]
+        offsets = np.diag([s.offset_sd for s in self.sensors])
+        return known + [self.in_repeatabilities(np.tile(one, (len(self.sound), 1))) for one in offsets]
+
+    def deviations(self) -> list[np.ndarray]:
+        """What each factor of the true machine does to all readings, for its logarithm."""
+        return [e / SMALL for e in self.effects([({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal])]
+
+    def unsteady(self) -> list[np.ndarray]:
+        """The same of the courses of the factors, and of the hall at each point."""
+        sd = np.array([s.repeat_sd for s in self.sensors])
+        factors = self.deviations()
+        courses = np.repeat([_course(point) for point in self.points], len(sd), axis=0).T
+        known = [CURVED * course * factor for factor in factors for course in courses]
+        other = self.read({}, {}, [(n, load_, room + SMALL) for n, load_, room in self.points])
+        return known + [ANY / SMALL * column for column in block_diag(*(other - self.sound) / sd)]
+
+    def effects(self, changes: Sequence[tuple[Change, Change]]) -> list[np.ndarray]:
+        """What values and errors do to all readings."""
+        return [self.in_repeatabilities(self.read(*change) - self.sound) for change in changes]
 
     def in_repeatabilities(self, change: np.ndarray) -> np.ndarray:
         """A change of all readings (points, sensors) as a vector."""
@@ -199,6 +217,15 @@ class Machine:
         """How far a change of all readings (points, sensors) is from nothing [sigma]."""
         return float(np.linalg.norm(np.linalg.solve(self.root, self.in_repeatabilities(change))))
 
+    def hides(self, change: np.ndarray) -> float | None:
+        """How far a change of all readings is from nothing [sigma]; None if it is too little or too much to hide."""
+        size = self.size(change)
+        return size if LEAST <= size <= MOST else None
+
+    def write(self, case: Path, table: np.ndarray) -> None:
+        """Readings into the files of a case."""
+        write_table(case / "DATA.csv", self.sensors, table)
+
     def distance(self, hidden: Sequence[tuple[Change, Change]], classes: Collection[str]) -> tuple[float, str]:
         """How far what is hidden is from a rival of any size in the place of one of its faults [sigma], and which.
 
@@ -206,11 +233,10 @@ class Machine:
             hidden: values and errors of each fault
             classes: of the faults, none of which is a rival
         """
-        rivals = {}
-        for fault in FAULTS:
-            for k, (changed, errors) in enumerate(self.units(fault)):
-                rivals[f"{fault.cause} {k}"] = self._effect(changed, errors), classes_of([fault.cause])
-        own = np.linalg.solve(self.root, np.array([self._effect(*h) for h in hidden]).T)
+        units = [(fault.cause, k, unit) for fault in FAULTS for k, unit in enumerate(self.units(fault))]
+        moved = self.effects([unit for _, _, unit in units])
+        rivals = {f"{cause} {k}": (m, classes_of([cause])) for (cause, k, _), m in zip(units, moved, strict=True)}
+        own = np.linalg.solve(self.root, np.array(self.effects(hidden)).T)
         nearest = np.inf, ""
         for k in range(len(hidden)):
             rest = np.delete(own, k, axis=1)
@@ -275,10 +301,18 @@ def _write_rig(path: Path, rng: np.random.Generator) -> str:
         return f"{stages} {ratio:g}, {power}, {speed}, {oil}{', fan' * fan}"
 
 
-def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) -> dict[str, Any]:
+def make(
+    build: Callable[[Path, np.random.Generator], Machine],
+    number: int,
+    seed: int,
+    k: int,
+    folder: Path,
+    kind: str | None = None,
+) -> dict[str, Any]:
     """Write one case and return its truth.
 
     Args:
+        build: a machine on its bench from a rig file
         number: of the sheet
         seed, k: of the challenge, and number of the case
         folder: for the files; made if need be
@@ -291,7 +325,7 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
     while True:
         try:
             plate = _write_rig(case / "machine.toml", rng)
-            machine = Machine(case / "machine.toml", rng)
+            machine = build(case / "machine.toml", rng)
             number_of = 0 if kind == "clean" else 1 if kind == "single" else int(rng.integers(2, 5))
             faults, hidden, shown, effects = _hide(machine, number_of, rng)
             near = machine.distance(hidden, classes_of(f.cause for f in faults)) if faults else None
@@ -301,7 +335,7 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
     sd = np.array([s.repeat_sd for s in machine.sensors])
     offsets = np.array([s.offset_sd for s in machine.sensors]) * rng.standard_normal(len(sd))
     noisy = shown + offsets + sd * rng.standard_normal(shown.shape)
-    _write(case / "DATA.csv", machine.sensors, noisy)
+    machine.write(case, noisy)
     thermal = [i for i, s in enumerate(machine.sensors) if s.name in ("T_oil", "T_wall")]
     change = [f"{machine.sensors[i].name}_K" for i in thermal]
     truth = {
@@ -336,8 +370,8 @@ def _hide(
         if drawn is None or classes_of([FAULTS[k].cause]) & classes_of(f.cause for f in faults):
             continue
         moved = machine.read({**changed, **drawn[0]}, {**errors, **drawn[1]})
-        effect = machine.size(moved - shown)
-        if not LEAST <= effect <= MOST:
+        effect = machine.hides(moved - shown)
+        if effect is None:
             continue
         changed, errors, shown = {**changed, **drawn[0]}, {**errors, **drawn[1]}, moved
         faults.append(FAULTS[k])
@@ -348,9 +382,11 @@ def _hide(
     return faults, hidden, shown, effects
 
 
-def _write(path: Path, sensors: Sequence[Sensor], table: np.ndarray) -> None:
-    """Readings as a table with the columns of the rig file."""
-    lines = [",".join(s.column for s in sensors)]
-    for row in table:
-        lines.append(",".join(f"{as_shown(s, v):.4f}" for s, v in zip(sensors, row, strict=True)))
+def write_table(
+    path: Path, sensors: Sequence[Sensor], table: np.ndarray, before: Sequence[Sequence[str]] | None = None
+) -> None:
+    """Readings as a table with the columns of the rig file, and a first column of its own if there is one."""
+    shown = [[s.column for s in sensors]]
+    shown += [[f"{as_shown(s, v):.4f}" for s, v in zip(sensors, row, strict=True)] for row in table]
+    lines = [",".join([*first, *row]) for first, row in zip(before or [()] * len(shown), shown, strict=True)]
     path.write_text("\n".join(lines) + "\n", "utf-8")

@@ -20,6 +20,8 @@ FILES: Mapping[str, tuple[str, str]] = {
     "card": ("card.json", "CARD.json"),
     "reference": ("reference.csv", "REF.csv"),
     "points": ("points.csv", "POINTS.csv"),
+    "log": ("log.csv", "LOG.csv"),
+    "reference_log": ("reference_log.csv", "REFLOG.csv"),
 }
 
 #: Kinds of the keys, as the bench names them.

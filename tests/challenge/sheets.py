@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from . import foreign, machines, model_rig
+from . import foreign, logs, machines, model_rig
 from .cases import Sheet, make_case
 from .textbook import campaign as textbook
 
@@ -21,7 +21,9 @@ SHEETS: Mapping[str, Sheet] = {
 #: the draws.
 MAKERS: Mapping[str, Callable[..., dict[str, Any]]] = {
     **{name: partial(make_case, draw, number) for number, (name, draw) in enumerate(SHEETS.items())},
-    "machines": partial(machines.make, len(SHEETS)),
+    "machines": partial(machines.make, machines.Machine, len(SHEETS)),
+    "logs": partial(machines.make, partial(logs.Logged, True), len(SHEETS) + 1),
+    "lone_logs": partial(machines.make, partial(logs.Logged, False), len(SHEETS) + 2),
 }
 #: Sheets whose scores are pooled by `--sheet all`.
 POOLED = ("own", "foreign", "textbook", "machines")
