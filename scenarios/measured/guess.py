@@ -33,6 +33,8 @@ KIND = 4
 END = 2
 #: Letters of a word that must stand alone.
 SHORT = 3
+#: Share of the largest reading that noise at rest stays within.
+REST = 0.05
 
 
 @dataclass(frozen=True)
@@ -185,13 +187,16 @@ def _driving(known: Mapping[str, str], wanted: Mapping[str, Sensor]) -> dict[str
 
 
 def _turned(card: Card, scenario: Scenario, cells: Mapping[str, Sequence[str]], said: Mapping[str, bool]) -> Card:
-    """The card with what columns hold: magnitudes as said, or where no cell is below zero and the model is."""
+    """The card with what columns hold: magnitudes as said, or where no cell is below zero and the model is.
+
+    What noise at rest shows below zero is none.
+    """
     nominal, found = Nominal(scenario), dict(card.sensors)
     for sensor in sensors_of(scenario, card):
         column = numbers([cell for cell in cells.get(sensor.column, ()) if cell])
         signed, magnitude = sensor.signs == (1.0, 1.0), said.get(sensor.name)
         if magnitude is None and column is not None and len(column) and SI[sensor.kind] != "K":
-            above = bool(column.min() >= 0)
+            above = bool(column.min() >= -REST * column.max())
             magnitude = above if above == signed and (not above or nominal.value(sensor.reads) < 0) else None
         if magnitude is not None:
             signs = {} if magnitude else {"signs": [1.0, 1.0]}

@@ -36,7 +36,7 @@ def challenge(
         typer.Option(
             help="own: the planetary rig as the model has it; foreign: another simulator, with a healthy reference; "
             "textbook: a frozen third one with rough readings; machines: units of `gearheat new` by random name "
-            "plates; rigs: steady points of other shipped rigs; logs: such units in operation, with a healthy log of each; "
+            "plates; rigs: steady points of other shipped rigs; logs: such units in operation beside a healthy log; "
             "lone_logs: without; practice: the campaigns of --practice; all: own, foreign, textbook, machines and "
             "practice, pooled."
         ),

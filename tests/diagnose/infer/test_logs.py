@@ -42,6 +42,7 @@ class Farm:
         self.scenario = load("wind_turbine")
         self.like = Log("made", sensors(), {}, empty, empty, 600.0, empty, True)
         self.filter, self.knobs = filter_of(self.scenario, self.like)
+        self.filter.parts = 8
         rng = np.random.default_rng(5)
         self.machines = [differing(self.knobs, rng, MACHINES) for _ in range(3)]
         past = [[self.log(m, q / 4, 10 * m + q) for q in range(PAST)] for m in range(3)]

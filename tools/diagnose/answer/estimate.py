@@ -48,22 +48,24 @@ def loose_variance(fit: Fit) -> np.ndarray:
 
 
 def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
-    """Size, averaged over the hypotheses that hold a cause, and shapes of the most probable one."""
+    """Size, averaged over the hypotheses that hold a cause in the form of the most probable one, and shapes of that."""
     total = sum(p for _, p in members)
     acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
     if not acting or cause not in members[0][0].fit.causes:
         return _spread(found, cause, members)
-    pairs = []
-    for h, _ in acting:
-        place = Vector(found.problem, h.fit.look.acting).sizes[h.fit.causes.index(cause)]
-        x, covariance = posterior(found.problem, h)
-        pairs.append((x[place], covariance[place, place]))
-    weights = [p for _, p in acting]
+    pairs, weights = [], []
+    best = max(acting, key=lambda member: member[1])[0]
+    one = best.fit.look.acting[best.fit.causes.index(cause)]
+    for h, p in acting:
+        k = h.fit.causes.index(cause)
+        if h.fit.look.acting[k].formula.form.name == one.formula.form.name:
+            place = Vector(found.problem, h.fit.look.acting).sizes[k]
+            x, covariance = posterior(found.problem, h)
+            pairs.append((x[place], covariance[place, place]))
+            weights.append(p)
     w, (m, variances) = np.array(weights) / sum(weights), np.transpose(pairs)
     centre = float(w @ m)
     spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
-    best = max(acting, key=lambda member: member[1])[0]
-    one = best.fit.look.acting[best.fit.causes.index(cause)]
     s = one.formula.cause.size
     size = _told(s, [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)])
     return (size, *_shapes(found.problem, best, one))

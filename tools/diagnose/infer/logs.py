@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 
 import numpy as np
 
@@ -22,8 +23,14 @@ from ..model.windows import WINDOW, Windows, windows
 from .levels import Levels, Quadratics, estimate, first_levels
 from .problem import Look, Problem
 
-#: Passes over the healthy logs, and over those in question; each begins where the last one ended.
-PASSES = 4
+#: Passes over logs at most; knobs move by so many standard deviations between machines at most, and stay where a move
+#: makes the logs likelier by less than so much. They stay the nearer the less likely the logs become.
+PASSES, FAR, LITTLE = 30, 2.0, 1.0
+DAMPINGS = (0.0, 1.0, 10.0, 100.0, 1000.0)
+#: Passes at first that take every move: what switches makes logs less likely before it makes them likelier.
+FREE = 4
+#: Scatter of readings at least, as a share of what the card says.
+LEAST = 0.3
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05
 #: Of states that are no body's.
@@ -37,6 +44,8 @@ SHORTEST = 40
 FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
+#: Steps of a sample at most; another twice as many change what is foreseen by less than so much of its errors.
+PARTS, NEAR = 8, 0.1
 #: Windows by which it is told whether logs hold means.
 TIMED = 24
 #: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
@@ -63,6 +72,7 @@ class Fleet:
         levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
         length: samples of a window that count
+        at: knobs of the machines at which they say it (machines, k)
         seasons: machine and number of a season by the calendar -> number of that one in the levels, its middle time [s]
     """
 
@@ -72,6 +82,7 @@ class Fleet:
     levels: Levels
     share: float
     length: int
+    at: np.ndarray
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
@@ -79,7 +90,8 @@ class Fleet:
         mean, covariance = (a[[machine]] for a in (self.levels.mean, self.levels.covariance))
         levels = replace(self.levels, mean=mean, covariance=covariance)
         seasons = {(0, number): known for (one, number), known in self.seasons.items() if one == machine}
-        return replace(self, past=self.past.some(np.zeros(0, dtype=int)), levels=levels, seasons=seasons)
+        past = self.past.some(np.zeros(0, dtype=int))
+        return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons)
 
     def going_on(self, logs: Sequence[Log]) -> Fleet:
         """The same for logs in question in one season of the machine's healthy ones, the nearer the more so."""
@@ -97,19 +109,18 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     driven = drive_by(scenario, log.sensors).spec
     roles = Roles.of(driven)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
-    spec = driven.with_values(relays)
-    known = {f"{part.name}.{key}" for part in driven.parts for key in part.values}
-    found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
+    flat = driven.with_values(relays).flat()
+    found = tuple(k for k in knobs(roles, log.sensors) if flat.index.keys() >= set(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    plant = Plant(spec.flat(), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    plant = Plant(flat, paths, [s.reads for s in log.given], [s.reads for s in log.read])
     bodies, states = plant.flat.bodies, plant.flat.states
     noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
-    return Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], noise), found
+    return Filter(plant, found, log.given, log.read, noise), found
 
 
-def _pass(progress: Progress, logs: str, n: int) -> Callable[[float], None]:
-    """Progress of one pass over some logs."""
-    return lambda share: progress(f"{logs}, pass {n + 1} of {PASSES}", (n + share) / PASSES)
+def _pass(progress: Progress, logs: str) -> Callable[[int, float], None]:
+    """Progress of passes over some logs."""
+    return lambda n, share: progress(f"{logs}, pass {n + 1} of at most {PASSES}", (n + share) / PASSES)
 
 
 def window_length(logs: Sequence[Log]) -> int:
@@ -151,40 +162,97 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0, length)
+        return Fleet(own, found, empty, begun, 0.0, length, begun.mean)
     past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
-    z = np.zeros((machines, len(sd)))
-    own.moments = _of_moments(own, past, z[machine])
-    for n in range(PASSES):
-        at = z[machine]
-        passed = own.run(past, at, progress=_pass(progress, "healthy logs", n))
-        own.scatter = _scatter(own, passed)
-        said = _quadratics(passed, at)
-        if n + 1 < PASSES:
-            levels = estimate(said, season, machine_of, begun)
-            z = z + np.clip(levels.mean - z, -sd, sd)
+    _suit(own, past, np.zeros((len(machine), len(sd))))
+    own.learns = True
+    at, passed, said = _walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
     levels = estimate(said.times(share), season, machine_of, begun)
     dated = all(log.dated for log in logs)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys) if dated}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, seasons)
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, seasons)
 
 
-def _of_moments(own: Filter, data: Windows, z: np.ndarray) -> bool:
-    """Whether windows hold what was read at moments: their inputs step, and the filter foresees them better so."""
+def _walk(
+    own: Filter,
+    data: Windows,
+    group: np.ndarray,
+    expected: tuple[np.ndarray, np.ndarray],
+    progress: Callable[[int, float], None],
+    share: float = 0.0,
+) -> tuple[np.ndarray, Passed, Quadratics]:
+    """The likeliest knobs of groups of windows: passes, each where the one before points to, until they stay there.
+
+    Args:
+        own: the filter; its scatter is fitted where it learns
+        data: the windows
+        group: number of the group of each
+        expected: where all groups begin and are expected (k,), and their covariance about it (k, k)
+        progress: told of the number of a pass and the share of it that is done
+        share: of the samples that counts; 0 for what each pass shows
+
+    Returns:
+        knobs (groups, k), the pass there, and what the windows say there
+    """
+    begun, known, sd = expected[0], np.linalg.inv(expected[1]), np.array([k.sd for k in own.knobs])
+    z = np.tile(begun, (int(group.max()) + 1, 1))
+
+    def value(passed: Passed, z: np.ndarray) -> float:
+        return counted * log_likelihood(passed) - float(np.einsum("ni,ij,nj", z - begun, known, z - begun)) / 2
+
+    best = -np.inf, z
+    for n in range(PASSES):
+        passed = own.run(data, z[group], progress=partial(progress, n))
+        said, scatter, counted = _quadratics(passed, z[group]), own.scatter, share or min(independent(passed), 1.0)
+        if own.learns:
+            own.scatter = _scatter(own, passed)
+            passed = own.run(data, z[group], slopes=False)
+        told, least = said.times(counted).summed(group, len(z)), value(passed, z)
+        H = told.H + known
+        uphill, gained = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None], 0.0
+        best = max(best, (least, z), key=lambda tried: tried[0])
+        free = not own.learns and n < FREE
+        if not own.learns and n == FREE and least < best[0]:
+            z = best[1]
+            continue
+        for damping in DAMPINGS:
+            step = np.linalg.solve(H + damping * np.diag(sd**-2), uphill)[:, :, 0].clip(-FAR * sd, FAR * sd)
+            gained = value(own.run(data, (z + step)[group], slopes=False), z + step) - least
+            if free or gained >= 0:
+                break
+        if n + 1 == PASSES or (not free and gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
+            break
+        z = z + step if free or gained > 0 else z
+    return z, passed, said
+
+
+def _suit(own: Filter, data: Windows, z: np.ndarray) -> None:
+    """Fit the filter to windows: the steps of a sample, and whether they hold what was read at moments."""
+    some = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int)
+
+    def passed(moments: bool, parts: int) -> Passed:
+        own.moments, own.parts = moments, parts
+        return own.run(data.some(some), z[some], slopes=False)
+
+    found = passed(False, 1)
+    while own.parts < PARTS:
+        finer = passed(False, 2 * own.parts)
+        scale = np.nanmedian(np.abs(finer.error), axis=(0, 1))
+        if (np.sqrt(np.nanmean((finer.shown - found.shown) ** 2, axis=(0, 1))) <= NEAR * scale).all():
+            own.parts //= 2
+            break
+        found = finer
     changes, whole = np.abs(np.diff(data.given, axis=1)), np.ptp(data.given[data.there], axis=0)
-    if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() < STEPPING:
-        return False  # they change all the time: a wider error of each would only hide what else is wrong
-    some, logs = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int), []
-    for moments in (False, True):
-        own.moments = moments
-        logs.append(log_likelihood(own.run(data.some(some), z[some], slopes=False)))
-    return logs[1] > logs[0]
+    if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() >= STEPPING:
+        # where inputs change all the time a wider error of each would only hide what else is wrong
+        logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
+        own.moments = logs[1] > logs[0]
 
 
 def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
@@ -195,7 +263,8 @@ def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
 def _scatter(own: Filter, passed: Passed) -> np.ndarray:
     """Scatter of the readings that makes the prediction errors as large as they are."""
     usual = np.nanmedian(passed.error**2 / passed.variance, axis=(0, 1)) / 0.455
-    return np.asarray(own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5)
+    found = own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5
+    return np.maximum(found, LEAST * own.read_sd)
 
 
 def independent(passed: Passed) -> float:
@@ -241,20 +310,17 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     data = windows(logs, own.given, own.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
-    at, sd = np.tile(levels.mean[0], (len(season), 1)), np.array([k.sd for k in found.knobs])
     if not found.share:
-        own.moments = _of_moments(own, data, at)
-    wide = np.linalg.inv(levels.covariance[0] + levels.season + np.diag(sd**2))
-    for n in range(PASSES):
-        passed = own.run(data, at, progress=_pass(progress, "logs in question", n))
-        told = _quadratics(passed, at)
-        if n + 1 < PASSES:
-            by_season = told.spread(levels.window).summed(season, int(season.max()) + 1)
-            C = np.linalg.inv(by_season.H + wide)
-            moved = (C @ (by_season.eta + wide @ levels.mean[0])[:, :, None])[:, :, 0]
-            at = (at[0] + np.clip(moved - at[0], -2 * sd, 2 * sd))[season]
-    moves = Quadratics(told.eta - told.H @ levels.mean[0], told.H).times(found.share or independent(passed))
-    return Question(data, season, _spans(data.time, season), moves)
+        _suit(own, data, np.tile(levels.mean[0], (len(season), 1)))
+    span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
+    wide = levels.covariance[0] + levels.season + np.diag(sd**2)
+    step, own.learns = _pass(progress, "logs in question"), not found.share
+    passed, said = _walk(own, data, season, (found.at[0], wide), step)[1:]
+    nearer = _walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)[1:]
+    if log_likelihood(nearer[0]) - log_likelihood(passed) > data.counts.sum():
+        passed, said = nearer  # a change is so large that it matters where the filter is
+    moves = Quadratics(said.eta - said.H @ levels.mean[0], said.H).times(found.share or independent(passed))
+    return Question(data, season, span, moves)
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:

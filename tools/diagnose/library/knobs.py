@@ -141,6 +141,6 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
             id = f"sensor.{s.kind}.offset"
             doc = f"The {kind.words} reads too high or too low."
             yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, sensor=s.name)
-        elif s.kind in GAINS and s.role == "given":
+        elif s.kind in GAINS:
             doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
             yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)

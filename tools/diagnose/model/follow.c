@@ -1,5 +1,5 @@
 /* Windows of logs, some side by side: a rig steps from sample to sample, and a Kalman filter corrects its states by what
-   is read. Two implicit stages of second order a sample, L-stable and stiffly accurate; exact derivatives by the knobs.
+   is read. Two implicit stages of second order a step, L-stable and stiffly accurate; exact derivatives by the knobs.
 
    The text of march.c stands above this one. Matrices of one lane lie column by column. */
 
@@ -7,13 +7,16 @@
 typedef struct {
   whole n, L, k, free;                       /* whether samples that count do not correct */
   whole moments;                             /* whether readings are of the end of a sample, and no means over it */
+  whole parts;                               /* steps of a sample */
   const whole *length;                       /* of each window (n) */
   const unsigned char *counts;               /* (n, L) */
   const double *given, *read;                /* (n, L, given), (n, L, shown), NaN where missing */
-  const double *factor, *shift, *offset;     /* input = factor * given - shift (n, given); shift of readings (n, shown) */
-  const double *u, *p, *dp;                  /* (nu), (n, np), (n, plant's knobs, k) */
-  const double *by;                          /* of the shift of readings by the knobs (shown, k) */
-  const whole *input_of, *gain;              /* input that a knob moves or -1, and whether by a factor (k) */
+  const double *p, *dp;                      /* (n, np), (n, plant's knobs, k) */
+  const double *factor, *shift;              /* input = factor * given - shift (n, given) */
+  const double *scaled, *offset;             /* shown = scaled * reading + offset (n, shown) */
+  const double *by;                          /* 1 where a knob moves a reading (shown, k) */
+  const double *u, *noise;                   /* (nu); standard deviation of the given inputs (given) */
+  const whole *input_of, *gain;              /* input that a knob moves or -1, and whether it moves by a factor (k) */
   const whole *u_at, *state_of;              /* place of each given input (given); state of each reading or -1 (shown) */
   const double *x0, *z0, *P0, *Q, *scatter;  /* (n, nx), (nz), diagonals (nx), (nx); standard deviations (shown) */
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
@@ -31,13 +34,14 @@ static const double LOG_SETTLED = 1e-10, LOG_LONG = 2, LOG_SHORT = 0.3, MISSING 
 typedef struct {
   Runs runs;
   const Logs *logs;
-  whole t, nx, nw, reads, columns;          /* columns: k knobs, then nx states */
-  lanes *factor, *shift, *offset, *dp;
+  whole t, nx, nw, reads, columns;          /* columns: k knobs, then nx states, then the noise of inputs */
+  lanes *factor, *shift, *scaled, *offset, *dp;
   lanes *early;                             /* states at the end, less those with the inputs of the sample before */
   double first;                             /* weight of the first stage in what is read */
-  lanes *w[3], *LU[2], *base;               /* at the begin, and of both stages */
+  lanes *w[3], *LU[2], *base, *begin;       /* at the begin of a step and of both its stages; at that of the sample */
   whole *pivot[2];
   lanes *y[2], *d[2], *by[2];               /* readings, and derivatives of unknowns and of readings of both stages */
+  lanes *shown, *shown_by, *turn;           /* of the sample: what is read, its derivatives; of states before the step */
   lanes *own, *S, *S_new, *P, *AP, *CP, *cross, *gain, *V, *e, *e_V, *variance;
   whole *pivot_V;
   lanes *slope, *curvature;
@@ -69,8 +73,8 @@ static void log_stage(Follow *F, lanes *w, lanes *LU, whole *pivot, lanes h) {
   }
 }
 
-/* Derivatives of some rows by the plant's knobs and inputs along the knobs here: adds `part` times them to columns of b,
-   `height` apart. */
+/* Derivatives of some rows by the plant's knobs and inputs along the knobs here, and along the noise of inputs: adds
+   `part` times them to columns of b, `height` apart. */
 static void along(Follow *F, Pattern by, const lanes *entries, lanes *b, whole height, whole from, lanes part) {
   const Plant *P = F->runs.plant;
   const Logs *D = F->logs;
@@ -84,6 +88,7 @@ static void along(Follow *F, Pattern by, const lanes *entries, lanes *b, whole h
           b[c * height + i] -= value * (D->gain[c] ? F->runs.u[D->u_at[j - P->knobs]] + F->shift[j - P->knobs]
                                                    : lanes_all(1.0));
       }
+      if (j >= P->knobs) b[(D->k + F->nx + j - P->knobs) * height + i] += value * D->noise[j - P->knobs];
     }
 }
 
@@ -112,21 +117,23 @@ static void product(lanes *c, const lanes *a, const lanes *b, whole n, whole m, 
       for (whole i = 0; i < n; i++) c[j * n + i] += a[k * high + i] * b[j * tall + k];
 }
 
-/* Derivatives of the sample into d[1] and by[1], columns of knobs first. */
-static void log_slopes(Follow *F, double step, lanes h) {
-  const whole nw = F->nw, k = F->logs->k;
+/* Derivatives behind a step into d[1] and turn, columns of knobs first, from those before it; adds its share to those of
+   what is read. */
+static void log_slopes(Follow *F, double step, lanes h, double share) {
+  const whole nw = F->nw, nx = F->nx;
   for (int stage = 0; stage < 2; stage++) {
     lanes *d = F->d[stage];
     memset(d, 0, F->columns * nw * sizeof *d);
     for (whole c = 0; c < F->columns; c++)
-      for (whole i = 0; i < F->nx; i++) {
-        const lanes begin = lanes_all((double)(c - k == i));
+      for (whole i = 0; i < nx; i++) {
+        const lanes begin = F->turn[c * nx + i];
         d[c * nw + i] = stage ? begin + (step * (1 - LOG_GAMMA) / h) * (F->d[0][c * nw + i] - begin) : begin;
       }
     log_turn(F, stage, h);
   }
+  for (whole c = 0; c < F->columns; c++) memcpy(F->turn + c * nx, F->d[1] + c * nw, nx * sizeof(lanes));
   for (whole i = 0; i < F->columns * F->reads; i++)
-    F->by[1][i] = F->first * F->by[0][i] + (1 - F->first) * F->by[1][i];
+    F->shown_by[i] += share * (F->first * F->by[0][i] + (1 - F->first) * F->by[1][i]);
 }
 
 /* Covariance of the errors with its factors, gain, covariance after the sample. A walk that gains Q in a sample has Q/3
@@ -134,7 +141,8 @@ static void log_slopes(Follow *F, double step, lanes h) {
 static void log_update(Follow *F) {
   const Logs *D = F->logs;
   const whole nx = F->nx, m = F->reads;
-  const lanes *C = F->by[1] + D->k * m, *A = F->d[1] + D->k * F->nw;
+  const lanes *C = F->shown_by + D->k * m, *A = F->d[1] + D->k * F->nw, *B = A + nx * F->nw, *E = C + nx * m;
+  const whole given = F->runs.plant->given;
   const double mean = D->moments ? 1 : 1.0 / 3, common = D->moments ? 1 : 0.5;
   int fine[LANES] = {0};
   for (whole i = 0; i < nx; i++)
@@ -145,12 +153,14 @@ static void log_update(Follow *F) {
     for (whole j = 0; j < m; j++) {
       lanes sum = lanes_all(D->state_of[i] >= 0 && D->state_of[i] == D->state_of[j] ? mean * D->Q[D->state_of[i]] : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->CP[s * m + i] * C[s * m + j];
+      for (whole g = 0; g < given; g++) sum += E[g * m + i] * E[g * m + j];
       F->V[i * m + j] = i == j ? sum + F->variance[i] : sum;
     }
   for (whole i = 0; i < nx; i++) {
     for (whole j = 0; j < m; j++) {
       lanes sum = lanes_all(D->state_of[j] == i ? common * D->Q[i] : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->AP[s * nx + i] * C[s * m + j];
+      for (whole g = 0; g < given; g++) sum += B[g * F->nw + i] * E[g * m + j];
       F->cross[i * m + j] = F->gain[i * m + j] = sum;
     }
   }
@@ -162,6 +172,10 @@ static void log_update(Follow *F) {
       lanes sum = lanes_all(i == j ? D->Q[i] : 0.0), mirrored = sum;
       for (whole s = 0; s < nx; s++)
         sum += F->AP[s * nx + i] * A[s * F->nw + j], mirrored += F->AP[s * nx + j] * A[s * F->nw + i];
+      for (whole g = 0; g < given; g++) {
+        const lanes both = B[g * F->nw + i] * B[g * F->nw + j];
+        sum += both, mirrored += both;
+      }
       for (whole r = 0; r < m; r++)
         sum -= F->gain[i * m + r] * F->cross[j * m + r], mirrored -= F->gain[j * m + r] * F->cross[i * m + r];
       F->P[j * nx + i] = F->P[i * nx + j] = (sum + mirrored) / 2;
@@ -198,10 +212,13 @@ static void log_correct(Follow *F, const Told *told, lanes corrects, lanes count
     for (whole i = 0; i < m; i++)
       told->variance[(F->runs.run[l] * D->L + F->t) * m + i] = F->own[i][l];
   for (whole i = 0; i < nx * m; i++) F->gain[i] = lanes_only(corrects != 0, F->gain[i]);
-  product(by_z, F->by[1] + k * m, F->S, m, nx, k, m, nx);
+  product(by_z, F->shown_by + k * m, F->S, m, nx, k, m, nx);
   product(F->S_new, F->d[1] + k * F->nw, F->S, nx, nx, k, F->nw, nx);
   for (whole c = 0; c < k; c++) {
-    for (whole i = 0; i < m; i++) by_z[c * m + i] += F->by[1][c * m + i] + D->by[i * k + c];
+    for (whole i = 0; i < m; i++) {
+      const lanes own = D->gain[c] ? F->shown[i] : lanes_all(1.0);
+      by_z[c * m + i] += F->shown_by[c * m + i] + D->by[i * k + c] * own;
+    }
     for (whole i = 0; i < nx; i++) {
       lanes sum = F->S_new[c * nx + i] + F->d[1][c * F->nw + i];
       for (whole r = 0; r < m; r++) sum -= F->gain[i * m + r] * by_z[c * m + r];
@@ -223,7 +240,7 @@ static void log_given(Follow *F, whole t) {
   }
 }
 
-/* Both stages of a sample. */
+/* Both stages of a step. */
 static void log_step(Follow *F, lanes h) {
   for (int stage = 0; stage < 2; stage++) {
     memcpy(F->w[stage + 1], F->w[stage], F->nw * sizeof(lanes));
@@ -234,12 +251,35 @@ static void log_step(Follow *F, lanes h) {
   }
 }
 
+/* All steps of a sample with the inputs of one, from its begin; with derivatives on demand. */
+static void log_steps(Follow *F, whole inputs, int slopes) {
+  const Logs *D = F->logs;
+  const whole m = F->reads, nx = F->nx;
+  const double step = *D->step / D->parts;
+  const lanes h = lanes_all(step * LOG_GAMMA);
+  memset(F->shown, 0, m * sizeof(lanes)), memset(F->shown_by, 0, F->columns * m * sizeof(lanes));
+  for (whole c = 0; c < F->columns; c++)
+    for (whole i = 0; i < nx; i++) F->turn[c * nx + i] = lanes_all((double)(c - D->k == i));
+  log_given(F, inputs);
+  memcpy(F->w[0], F->begin, F->nw * sizeof(lanes));
+  for (whole part = 1; part <= D->parts; part++) {
+    const double share = D->moments ? part == D->parts : 1.0 / D->parts;
+    log_step(F, h);
+    for (whole i = 0; i < m; i++) F->shown[i] += share * (F->first * F->y[0][i] + (1 - F->first) * F->y[1][i]);
+    if (slopes) log_slopes(F, step, h, share);
+    memcpy(F->w[0], F->w[2], F->nw * sizeof(lanes));
+  }
+  for (whole i = 0; i < m; i++) {
+    F->shown[i] *= F->scaled[i];
+    for (whole c = 0; c < F->columns; c++) F->shown_by[c * m + i] *= F->scaled[i];
+  }
+}
+
 /* One sample of all lanes that are on. */
 static void log_sample(Follow *F, const Told *told) {
   Runs *R = &F->runs;
   const Logs *D = F->logs;
   const whole m = F->reads;
-  const lanes h = lanes_all(*D->step * LOG_GAMMA);
   lanes counts = lanes_all(0.0), corrects = counts;
   whole at[LANES];
   EACH {
@@ -248,25 +288,24 @@ static void log_sample(Follow *F, const Told *told) {
     corrects[l] = R->on[l] && !(D->free && D->counts[at[l]]);
   }
   memset(F->early, 0, F->nx * sizeof *F->early);
+  memcpy(F->begin, F->w[0], F->nw * sizeof(lanes));
   const int halved = D->moments && F->t % 2; /* the second half of a sample: the first has the inputs before */
   if (halved) {
-    log_given(F, F->t - 1), log_step(F, h);
+    log_steps(F, F->t - 1, 0);
     for (whole i = 0; i < F->nx; i++) F->early[i] = -F->w[2][i];
   }
-  log_given(F, F->t), log_step(F, h);
+  const int slopes = lanes_any(lanes_where(corrects != 0));
+  log_steps(F, F->t, slopes);
   for (whole i = 0; i < F->nx && halved; i++) F->early[i] += F->w[2][i];
   for (whole i = 0; i < m; i++) {
-    const lanes y = F->first * F->y[0][i] + (1 - F->first) * F->y[1][i] + F->offset[i];
+    const lanes y = F->shown[i] + F->offset[i];
     EACH {
       const double e = D->read[at[l] * m + i] - y[l];
       F->e[i][l] = isfinite(e) ? e : 0, F->variance[i][l] = isfinite(e) ? D->scatter[i] * D->scatter[i] : MISSING * MISSING;
       if (R->on[l]) told->error[at[l] * m + i] = F->e[i][l], told->shown[at[l] * m + i] = y[l];
     }
   }
-  memcpy(F->w[0], F->w[2], F->nw * sizeof(lanes));
-  if (!lanes_any(lanes_where(corrects != 0))) return;
-  log_slopes(F, *D->step, h);
-  log_correct(F, told, corrects, counts);
+  if (slopes) log_correct(F, told, corrects, counts);
 }
 
 static void log_placed(Follow *F, Room *room) {
@@ -278,7 +317,9 @@ static void log_placed(Follow *F, Room *room) {
   R->sparse = vectors(room, P->most), R->direct = vectors(room, P->most);
   R->LU = vectors(room, nw * nw), R->pivot = bytes(room, pivots);
   F->factor = vectors(room, P->given), F->shift = vectors(room, P->given), F->offset = vectors(room, m);
-  F->early = vectors(room, nx);
+  F->scaled = vectors(room, m);
+  F->early = vectors(room, nx), F->begin = vectors(room, nw), F->turn = vectors(room, F->columns * nx);
+  F->shown = vectors(room, m), F->shown_by = vectors(room, F->columns * m);
   F->dp = vectors(room, P->knobs * k), F->base = vectors(room, nx);
   for (int stage = 0; stage < 3; stage++) F->w[stage] = vectors(room, nw);
   for (int stage = 0; stage < 2; stage++) {
@@ -300,6 +341,7 @@ static void log_begun(Follow *F, whole from, whole to) {
   const Logs *D = F->logs;
   begun(R, D->p, from, to), across(F->dp, D->dp, from, to, P->knobs * D->k);
   across(F->factor, D->factor, from, to, P->given), across(F->shift, D->shift, from, to, P->given);
+  across(F->scaled, D->scaled, from, to, F->reads);
   across(F->offset, D->offset, from, to, F->reads), across(F->w[0], D->x0, from, to, F->nx);
   for (whole i = 0; i < P->nu; i++) R->u[i] = lanes_all(D->u[i]);
   for (whole i = F->nx; i < F->nw; i++) F->w[0][i] = lanes_all(D->z0[i - F->nx]);
@@ -314,7 +356,7 @@ __attribute__((visibility("default"))) int follow(const Plant *plant, const Logs
   const whole row = 0;
   const Duty one = {.S = 1, .H = 1, .row = &row};
   Follow F = {.runs = {.plant = plant, .duty = &one}, .logs = logs, .nx = plant->nx, .nw = plant->nw,
-              .reads = plant->shown, .columns = logs->k + plant->nx,
+              .reads = plant->shown, .columns = logs->k + plant->nx + plant->given,
               .first = logs->moments ? 0 : 1 - LOG_GAMMA};
   Room room = {0};
   void *block;

@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ....fmu.batch_library import share_rows
+from ....scenarios.measured.table import Sensor
 from ..library.knobs import Knob
 from .plant import Plant, library, record
 from .windows import Windows, means
@@ -23,8 +24,8 @@ from .windows import Windows, means
 TAILS = 4.0
 #: Standard deviation at the start of a state that no sensor reads [K].
 UNREAD = 6.0
-#: Scatter of a reading about the model before it is estimated [K].
-SCATTER = 1.0
+#: Scatter of a reading about the model before it is estimated, in repeatabilities.
+SCATTER = 3.0
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
@@ -59,40 +60,49 @@ class Filter:
     Args:
         plant: the rig; its knobs are the paths of the knobs here, `given` and `shown` those of the sensors
         knobs: what may differ
-        given, read: names of the sensors, as in the windows
+        given, read: the sensors, as in the windows
         drift: standard deviation that the random walk of a state that no sensor reads gains in one sample [K] (nx,)
     """
 
     def __init__(
-        self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
+        self, plant: Plant, knobs: Sequence[Knob], given: Sequence[Sensor], read: Sequence[Sensor], drift: np.ndarray
     ) -> None:
         self.plant, self.knobs, self.drift = plant, tuple(knobs), drift
-        self.given, self.read = tuple(given), tuple(read)
-        #: Scatter of each reading about the model [K] (reads,).
-        self.scatter = np.full(len(read), SCATTER)
+        self.given, self.read = tuple(s.name for s in given), tuple(s.name for s in read)
+        #: Repeatability of the inputs (given,) and of the readings (reads,).
+        self.given_sd, self.read_sd = (np.array([s.repeat_sd for s in sensors]) for sensors in (given, read))
+        #: Scatter of each reading about the model (reads,).
+        self.scatter = SCATTER * self.read_sd
+        #: Whether it is to be fitted to logs.
+        self.learns = False
         #: Whether what logs hold was read at moments, and is no mean over a sample.
         self.moments = False
+        #: Steps of a sample.
+        self.parts = 1
         self.nx = plant.nx
         self.u_at = [plant.u_place[path] for path in plant.given]
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
 
-    def settings(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def settings(self, z: np.ndarray) -> dict[str, np.ndarray]:
         """What the knobs set.
 
         Args:
             z: of each window (N, k)
 
         Returns:
-            parameters (N, np), their slopes (N, paths, k); factor and shift of the inputs (N, given) with
-            true = factor * shown - shift; shift of the readings (N, reads), and its slopes (reads, k)
+            p, dp: parameters (N, np), their slopes (N, paths, k)
+            factor, shift: of the inputs (N, given) with true = factor * shown - shift
+            scaled, offset: of the readings (N, reads) with shown = scaled * true + offset
+            by: 1 where a knob moves a reading (reads, k)
         """
         n, k = z.shape
         p = np.tile(self.plant.p, (n, 1))
         dp = np.zeros((n, len(self.plant.knobs), k))
         factor, shift = np.ones((n, len(self.given))), np.zeros((n, len(self.given)))
         offset, by = np.zeros((n, len(self.read))), np.zeros((len(self.read), k))
+        scaled = np.ones_like(offset)
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 p[:, self.plant.place[path]] *= np.exp(exponent * z[:, j])
@@ -104,14 +114,16 @@ class Filter:
                 shift[:, i] += 0.0 if knob.gain else z[:, j]
             elif knob.sensor:
                 i = self.read.index(knob.sensor)
-                offset[:, i] += z[:, j]
+                offset[:, i] += 0.0 if knob.gain else z[:, j]
+                scaled[:, i] *= np.exp(z[:, j]) if knob.gain else 1.0
                 by[i, j] = 1.0
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 dp[:, self.plant.knobs.index(path), j] = exponent * p[:, self.plant.place[path]]
             for path in knob.shifted:
                 dp[:, self.plant.knobs.index(path), j] = 1.0
-        return p, dp, factor, shift, offset, by
+        names = ("p", "dp", "factor", "shift", "scaled", "offset", "by")
+        return dict(zip(names, (p, dp, factor, shift, scaled, offset, by), strict=True))
 
     @property
     def noise(self) -> np.ndarray:
@@ -166,8 +178,9 @@ class Filter:
         """What `Passed` holds of windows by falling length."""
         data = data.halved() if self.moments else data
         (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
-        p, dp, factor, shift, offset, by = self.settings(z)
-        x, sd = self.start(data, offset)
+        known = self.settings(z)
+        known |= {"dp": known["dp"][:, :, :k], "by": known["by"][:, :k]}
+        x, sd = self.start(data, known["offset"])
         lengths = data.there.sum(axis=1)
         logs = record(
             n=n,
@@ -175,17 +188,14 @@ class Filter:
             k=k,
             free=int(free),
             moments=int(self.moments),
+            parts=self.parts,
             length=lengths,
             counts=data.counts,
             given=data.given,
             read=data.read,
-            factor=factor,
-            shift=shift,
-            offset=offset,
+            **known,
             u=self.plant.u,
-            p=p,
-            dp=dp[:, :, :k],
-            by=by[:, :k],
+            noise=self.given_sd,
             input_of=np.array([self.given.index(o.sensor) if o.sensor in self.given else -1 for o in self.knobs]),
             gain=np.array([o.gain for o in self.knobs], dtype=np.int64),
             u_at=np.array(self.u_at),
