@@ -147,6 +147,30 @@ def test_one_level_wets_all_wheels(made, gearheat, name):
     assert 0.5 < parts["oil"]["V"] / (parts["oil"]["level"] * floor) < 0.8
 
 
+@pytest.mark.parametrize(
+    ("stages", "ratio", "power", "most"),
+    [("helical,planetary", 30, "55 kW", 150), ("bevel,planetary", 25, "22 kW", 10), ("helical,worm", 60, "11 kW", 30)],
+)
+def test_wheels_before_planets_and_worms_dip_as_wheels_do(gearheat, tmp_path, stages, ratio, power, most):
+    """They lose a few tenths of a percent at most, more where there is more oil; planets and worms have a coefficient."""
+    plate = ("--stages", stages, "--ratio", ratio, "--power", power, "--speed", "1480 rpm")
+    lost = []
+    for more in ((), ("--oil-volume", "30 l")):
+        path = tmp_path / f"{len(more)}.toml"
+        assert gearheat("new", "it", *plate, *more, "-o", path).code == 0
+        types = {p.name: p.type for p in load(path).spec.parts}
+        assert (types["churning_1"], types["churning_2"]) == ("GearChurning", "Churning")
+        lost.append(gearheat("steady", path, "--json", "-").json["values"]["churning_1.P_loss"])
+    assert lost[0] < most and lost[0] < lost[1] / 2
+
+
+def test_planets_lose_less_than_a_blade_in_oil_would():
+    """A blade from the axis to the reach of the planets, wholly in still oil, with a drag coefficient of 2."""
+    for ratio in (3.5, 5.0, 9.0):
+        stage = sizing.unit(["planetary"], ratio, 55000.0, 155.0).stages[0]
+        assert stage.swept < 0.2 * (2 * stage.b * stage.reach**4 / 4)
+
+
 @pytest.mark.parametrize(("name", "count"), [("two", 0), ("four", 6)])
 def test_bearings_that_reach_below_the_level_drag(made, name, count):
     path, answer = made(name)

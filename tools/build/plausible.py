@@ -58,7 +58,7 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
         yield f"the input turns at {rpm:,.0f} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
     eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
     height = sizing.height_of_axes(made)
-    deepest = height - max(stage.reach for stage in made.stages)
+    deepest = height - max(map(sizing.lowest, made.stages))
     if (level := sizing.bath(made)["level"]) is not None and not deepest < level < height:
         yield (
             f"the oil stands at {1000 * level:.0f} mm, expected {1000 * deepest:.0f} mm, where the largest wheel dips,"

@@ -17,7 +17,21 @@ from ...scenarios.ranges import RANGES
 from . import sizing
 from .bearings import LIGHT
 from .sizing import APART, GAP, OVERHANG, SIDE, Unit
-from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
+from .stages import (
+    DRAG,
+    FACE,
+    K_BEVEL,
+    K_STAR,
+    KINDS,
+    SLIM,
+    T_WORM,
+    WIDTH,
+    Y_W,
+    BevelStage,
+    PlanetaryStage,
+    Stage,
+    WormStage,
+)
 
 #: Fastest air along a housing [m/s].
 STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")
@@ -168,7 +182,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
-        shape |= {"needles": f"planet_bearing_{k + 1}"}
+        shape |= {"needles": f"planet_bearing_{k + 1}", "drag": DRAG}
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
         shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
@@ -176,15 +190,11 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
-    c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
-    shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     found: dict[str, Any] = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
-    found |= {"driver": "pinion", "driven": "wheel", "needles": None}
-    return (
-        found
-        | shape
-        | {"r": _reach(s, k), "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
-    )
+    found |= {"driver": "pinion", "driven": "wheel", "needles": None} | shape
+    found |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule}
+    found |= {"c": 0.5 * OIL * CHURNED**3 * s.swept, "dips": sizing.dips(s), "r": _reach(s, k)}
+    return found | {"height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
 
 
 def _reach(s: Stage, k: int) -> str:
@@ -201,7 +211,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "path": f"{names[k]}_path_{end}",
             "bearing": bearing,
             "life": _num(life),
-            "dips": sizing.stands_in_oil(made, bearing),
+            "dips": sizing.stands_in_oil(made, k, bearing),
             "use": f"{s.kind}_bearing",
         }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)

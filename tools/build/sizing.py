@@ -312,20 +312,26 @@ def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft
     return Shaft(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (life_a, life_b), kind)
 
 
-def wheels_dip(made: Unit) -> bool:
-    """Whether wheels dip as the law of churning has it: planets and worms do otherwise."""
-    return not any(isinstance(stage, PlanetaryStage | WormStage) for stage in made.stages)
+def dips(stage: Stage) -> bool:
+    """Whether a stage's wheel dips as the law of churning has it: planets and worms do otherwise."""
+    return not isinstance(stage, PlanetaryStage | WormStage)
 
 
-def height_of_axes(made: Unit) -> float:
-    """Height of the axes of wheels that stand in one plane, above the bottom of a unit's housing [m]."""
-    return BELOW + max(max(s.r_1, s.r_2) + s.m_n for s in made.stages)
+def lowest(stage: Stage) -> float:
+    """Radius of what dips of a stage: of a worm, which stands below its wheel, the worm's own."""
+    return stage.r_1 if isinstance(stage, WormStage) else stage.reach
+
+
+def height_of_axes(made: Unit, k: int = 0) -> float:
+    """Height of a shaft's axis above the bottom of the housing: all in one plane, but for that of a worm wheel [m]."""
+    raised = made.stages[-1].a if isinstance(made.stages[-1], WormStage) and k == len(made.stages) else 0.0
+    return BELOW + max(max(s.r_1, lowest(s)) + s.m_n for s in made.stages) + raised
 
 
 def bath(made: Unit) -> dict[str, Any]:
     """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
     given, floor = made.volume, (made.length - 2 * made.wall) * (made.width - 2 * made.wall)
-    if not wheels_dip(made):
+    if not any(map(dips, made.stages)):
         volume = given or SHARE * made.length * made.width * made.height
         rule = "data sheet" if given else f"assumed: {100 * SHARE:.0f} % of the housing's volume"
         return {"volume": 1000 * volume, "level": None, "rule": rule}
@@ -336,22 +342,23 @@ def bath(made: Unit) -> dict[str, Any]:
             "level": given / FILLED / floor,
             "rule": f"data sheet; its level assumed: {taken}",
         }
-    smallest = min(made.stages, key=lambda s: s.r_2)
-    level = height_of_axes(made) - smallest.r_2 + min(DIP * smallest.m_n, smallest.r_2)
-    rule = "assumed: level above the housing's bottom at which the smallest wheel dips by"
-    rule += f" {DIP:g} modules; {taken}"
+    smallest = min(made.stages, key=lowest)
+    level = height_of_axes(made) - lowest(smallest) + min(DIP * smallest.m_n, lowest(smallest))
+    named = {"worm": "worm", "planetary": "smallest set of planets"}.get(smallest.kind, "smallest wheel")
+    rule = f"assumed: level above the housing's bottom at which the {named} dips by {DIP:g} modules; {taken}"
     return {"volume": 1000 * FILLED * level * floor, "level": level, "rule": rule}
 
 
-def stands_in_oil(made: Unit, bearing: str) -> bool:
+def stands_in_oil(made: Unit, k: int, bearing: str) -> bool:
     """Whether a bearing of the unit reaches below the level.
 
     Args:
         made: the unit
+        k: its shaft, from the input on
         bearing: its name in the catalogue
     """
-    level = bath(made)["level"]
-    return level is not None and height_of_axes(made) - si_of(catalogue("bearing")[bearing].values["D"]) / 2 < level
+    level, D = bath(made)["level"], si_of(catalogue("bearing")[bearing].values["D"])
+    return level is not None and height_of_axes(made, k) - D / 2 < level
 
 
 def compute_wetted_area(stage: Stage) -> float:

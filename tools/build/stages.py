@@ -39,6 +39,11 @@ SLIM = 0.4
 Y_W = 0.95
 #: Number of planets.
 PLANETS = 3
+#: Drag coefficient of a planet, as a cylinder across a flow [1].
+DRAG = 1.2
+#: Radial length of a planet that dips, mean over a turn, over how far planets reach, where they dip by a third of that:
+#: (acos(2/3) - 2/3 artanh(sqrt(5)/3)) / pi [1].
+CROSSED = 0.0635
 #: Numbers of teeth of suns to choose from.
 SUNS = range(18, 61)
 #: Least number of teeth of a planet.
@@ -106,6 +111,11 @@ class Stage:
     def reach(self) -> float:
         """Radius of what moves the oil."""
         return self.r_2
+
+    @property
+    def swept(self) -> float:
+        """Churning torque over half the oil's density and the square of the speed [m5], a torque coefficient of 1."""
+        return self.b * self.reach**4
 
     @property
     def volume(self) -> float:
@@ -235,6 +245,11 @@ class PlanetaryStage(Stage):
     def reach(self) -> float:
         """Of the planets round the axis."""
         return self.r_1 + 2 * self.r_2
+
+    @property
+    def swept(self) -> float:
+        """Of planets that cross the bath with each turn of the carrier [m5]."""
+        return self.count * DRAG * CROSSED * self.b * self.reach * self.a**3
 
     @property
     def inertia(self) -> float:
