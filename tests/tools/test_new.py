@@ -16,6 +16,7 @@ from gearheat.scenarios.load import load
 from gearheat.tools.build import sizing
 from gearheat.tools.build.bearings import LIFE
 from gearheat.tools.build.new import new
+from gearheat.tools.build.plausible import usual
 from gearheat.tools.solve.settings import flat_of
 
 FORCES = ("F_t", "F_r", "F_a")
@@ -152,7 +153,7 @@ def test_one_level_wets_all_wheels(made, gearheat, name):
     [("helical,planetary", 30, "55 kW", 150), ("bevel,planetary", 25, "22 kW", 10), ("helical,worm", 60, "11 kW", 30)],
 )
 def test_wheels_before_planets_and_worms_dip_as_wheels_do(gearheat, tmp_path, stages, ratio, power, most):
-    """They lose a few tenths of a percent at most, more where there is more oil; planets and worms have a coefficient."""
+    """They lose a few tenths of a percent at most, more where there is more oil; what is behind has a coefficient."""
     plate = ("--stages", stages, "--ratio", ratio, "--power", power, "--speed", "1480 rpm")
     lost = []
     for more in ((), ("--oil-volume", "30 l")):
@@ -286,6 +287,35 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     assert 'no stage "warm". Stages: spur, helical, bevel, worm, planetary.' in answer.err
     assert "Give --stages helical,helical,helical." in answer.err
     assert not path.exists()
+
+
+def test_one_fault_does_not_hide_another(gearheat, tmp_path):
+    plate = ("--stages", "planetary", "--ratio", "-2", "--power", "2 kW", "--speed", "1450 rpm", "--bearings", "plain")
+    rest = ("--base", "wall", "--motor-heat=-3 W", "--air-speed", "300 m/s", "--centre-distance", "100 mm")
+    answer = gearheat("new", "a", *plate, *rest, "-o", tmp_path / "a.toml")
+    assert answer.code == 2 and len(answer.problems()) == 6
+
+
+@pytest.mark.parametrize(("stages", "ratio"), [(["planetary"] * 4, 2000), (["helical"] * 5, 2000)])
+def test_more_stages_than_any_known_unit_are_drawn(gearheat, tmp_path, stages, ratio):
+    """The usual efficiency goes on by the stage."""
+    plate = ("--stages", ",".join(stages), "--ratio", ratio, "--power", "2 kW", "--speed", "1450 rpm", "--json", "-")
+    answer = gearheat("new", "a", *plate, "-o", tmp_path / "a.toml")
+    assert answer.code == 0, answer.err
+    low, high = answer.json["usual"]["efficiency_pct"]
+    fewer = usual(stages[1:], 2.0, ratio)
+    assert low < fewer[0] and high < fewer[1]
+    assert low < 100 * answer.json["efficiency"] < high
+
+
+def test_a_file_that_was_begun_does_not_stay(monkeypatch, tmp_path):
+    def fails(*_):
+        raise KeyError("4")
+
+    monkeypatch.setattr("gearheat.tools.build.new.usual", fails)
+    with pytest.raises(KeyError):
+        new("a", stages="helical", ratio=4.0, power="2 kW", speed="1450 rpm", out=tmp_path / "a.toml")
+    assert not (tmp_path / "a.toml").exists()
 
 
 @pytest.mark.parametrize(
@@ -430,6 +460,18 @@ def test_a_fan_and_a_cooler_cool(gearheat, tmp_path):
     }
     assert oil[()] > oil[("--fan",)] + 10
     assert 40 < oil[("--cooler",)] < 75
+
+
+@pytest.mark.parametrize(
+    ("stages", "power", "speed"), [("helical", "5 MW", "10000 rpm"), ("planetary", "1 MW", "1480 rpm")]
+)
+def test_a_cooler_takes_what_is_lost(stages, power, speed):
+    """By the loss of the rig itself at the oil's temperature, no more than 50 K above its water."""
+    made = new("it", stages=stages, ratio=5.0, power=power, speed=speed, oil="ISO VG 46 mineral", cooler=True)
+    taken = next(p for p in made.scenario.spec.parts if p.name == "cooler").values["G"] * 50
+    assert taken == pytest.approx(made.sizes["loss_W"], rel=0.02)
+    assert 40 < made.sizes["oil_degC"] < 70
+    assert not any("--cooler" in note for note in made.notes)
 
 
 def test_a_data_sheet_takes_the_place_of_the_rules(gearheat, tmp_path):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,15 @@ from ..show.console import writable, write
 from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions
-from .data_sheet import wanted_of
+from .data_sheet import Wanted, wanted_of
 from .plausible import WARM, no_load, notes, usual
-from .rig_file import around_of, text
-from .sizing import check, unit
+from .rig_file import Around, around_of, lost, text
+from .sizing import Unit, check, unit
 
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
+#: Times that a rig with a cooler is solved, each for the cooler of the loss before.
+COOLERS = 3
 #: Kind of stage -> the size by which one is known.
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 
@@ -101,8 +104,8 @@ def new(
     watts = problems.of(lambda: to_si(power, "W", name="--power"))
     w = problems.of(lambda: to_si(speed, "rad/s", name="--speed"))
     plate = 1.0 if watts is None else watts, 100.0 if w is None else w  # what is wrong else is told, too
-    problems.of(lambda: check(kinds, ratio, *plate, bearings))
     wanted = problems.of(lambda: wanted_of(centre_distance, housing, oil_volume))
+    problems.of(lambda: check(kinds, ratio, *plate, bearings, wanted or Wanted()))
     entry = problems.of(lambda: _oil(oil))
     around = problems.of(lambda: around_of(base, fan, cooler, motor_heat, air_speed, housing is not None))
     if not re.fullmatch(r"[\w.-]+", name):
@@ -117,18 +120,36 @@ def new(
         if path.exists():
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-        write(path, text(made, doc, speed, entry, around))
         try:
-            scenario = read_rig(path)
-            flat = flat_of(scenario)
-            point = conditions(scenario, flat)
-            rest = SteadyState(scenario, flat, steady(flat, point), backward=False)
-            idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
-        except GearheatError as error:
-            path.unlink()
+            return _solved(path, made, around, partial(text, made, doc, speed, entry, around))
+        except BaseException as error:
+            path.unlink(missing_ok=True)
+            if not isinstance(error, GearheatError):
+                raise
             why = error.problems[0]
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
-    foot = rest["foot.Q_flow"] if base != "free" else 0.0
+
+
+def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str]) -> NewRig:
+    """The rig that is written to a file, and what it does at its name plate.
+
+    Args:
+        path: of the file
+        made: the unit
+        around: what stands around it
+        drawn: gives the text of the file for the loss that a cooler takes [W]
+    """
+    loss = lost(made)
+    for _ in range(COOLERS if around.cooler else 1):
+        write(path, drawn(loss))
+        scenario = read_rig(path)
+        flat = flat_of(scenario)
+        point = conditions(scenario, flat)
+        rest = SteadyState(scenario, flat, steady(flat, point), backward=False)
+        loss = rest["efficiency.P_loss"]
+    idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
+    kinds = [s.kind for s in made.stages]
+    foot = rest["foot.Q_flow"] if around.base != "free" else 0.0
     sizes = {
         "schema": "gearheat.new/1",
         "file": str(path),
@@ -137,20 +158,20 @@ def new(
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
         "oil_degC": rest["oil.T"] - 273.15,
-        "loss_W": rest["efficiency.P_loss"],
+        "loss_W": loss,
         "no_load_W": float(idle[0]),
         "losses_W": rest.losses_by_kind(),
         "efficiency": rest["efficiency.eta"],
-        "without_fan": _without_fan(flat, point) if fan else None,
+        "without_fan": _without_fan(flat, point) if around.fan else None,
         "usual": {
-            "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, ratio),
+            "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, made.ratio),
             "oil_degC": WARM,
             "no_load_pct": no_load(kinds, kW),
         },
-        "base": base,
-        "foot_share": foot / (rest["efficiency.P_loss"] + (around.motor or 0.0)),
+        "base": around.base,
+        "foot_share": foot / (loss + (around.motor or 0.0)),
     }
-    return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"])))
+    return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"], around)))
 
 
 def _without_fan(flat: FlatModel, point: Mapping[str, float]) -> dict[str, float] | None:

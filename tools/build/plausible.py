@@ -11,6 +11,7 @@ import numpy as np
 from ...model.files import tables
 from . import sizing
 from .bearings import LIFE
+from .rig_file import Around
 from .sizing import Unit
 
 #: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
@@ -33,10 +34,17 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
         ends = [float(most) for most in MACHINES["worm"]]
         low, high = (float(np.interp(slow, ends, side)) for side in zip(*MACHINES["worm"].values(), strict=True))
         if len(kinds) > 1:
-            low, high = (end * fast / 100 for end, fast in zip((low, high), known[str(len(kinds) - 1)], strict=True))
+            low, high = (end * fast / 100 for end, fast in zip((low, high), _of(known, len(kinds) - 1), strict=True))
     else:
-        low, high = known.get(kinds[0], known)[str(len(kinds))]
+        low, high = _of(known.get(kinds[0], known), len(kinds))
     return round(low if kW >= 1 else low - known["small"], 1), round(high, 1)
+
+
+def _of(known: Mapping[str, Any], count: int) -> tuple[float, float]:
+    """Efficiencies [%] of units of a number of stages; of more than any known one, those of its stages go on."""
+    most = min(count, max(int(key) for key in known if key.isdigit()))
+    low, high = (100 * (end / 100) ** (count / most) for end in known[str(most)])
+    return low, high
 
 
 def no_load(stages: str | Sequence[str], kW: float) -> tuple[float, float]:
@@ -46,13 +54,14 @@ def no_load(stages: str | Sequence[str], kW: float) -> tuple[float, float]:
     return low, high if kW >= 1 else high + known["small"]
 
 
-def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
+def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) -> Iterator[str]:
     """What a user should know about a unit, and what its largest loss asks for where it is hot or lossy.
 
     Args:
         made: the unit
         sizes: the JSON object of `gearheat new`
         speed: of the input [rad/s]
+        around: what stands around it and cools it
     """
     if (rpm := 30 / math.pi * speed) > FAST:
         yield f"the input turns at {rpm:,.0f} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
@@ -71,7 +80,8 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float) -> Iterator[str]:
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:
-        yield f"the oil is above {WARM[1]:g} degC: such a unit needs --fan or --cooler, fins, or a larger housing."
+        ways = ("" if around.cooler else "--cooler, ") if around.fan or around.cooler else "--fan or --cooler, "
+        yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     if hot or eta < low:

@@ -10,7 +10,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ...model.errors import ScenarioError, suggestion
+from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.parts.joints import PRESSED
 from ...model.units import to_si
 from ...scenarios.ranges import RANGES
@@ -102,19 +102,28 @@ class Around:
 
 def around_of(base: str, fan: bool, cooler: bool, heat: str | None, air: str | None, boxed: bool) -> Around:
     """What stands around a unit, from what is written."""
+    problems, motor, draught = Problems(), None, DRAUGHT
     if base not in BASES:
-        raise ScenarioError(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
-    motor = None if heat is None else to_si(heat, "W", name="--motor-heat")
+        problems.append(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
+    if heat is not None:
+        motor, draught = problems.of(lambda: to_si(heat, "W", name="--motor-heat")), BLOWN
     if motor is not None and motor < 0:
-        raise ScenarioError(f"--motor-heat = {heat}: a motor gives heat, expected 0 W or more.")
-    draught = DRAUGHT if motor is None else BLOWN
-    speed = draught if air is None else to_si(air, "m/s", name="--air-speed")
-    if not 0 <= speed <= STORM:
-        raise ScenarioError(f"--air-speed = {air}: expected 0 m/s to {STORM:g} m/s.")
+        problems.append(f"--motor-heat = {heat}: a motor gives heat, expected 0 W or more.")
+    speed = draught if air is None else problems.of(lambda: to_si(air, "m/s", name="--air-speed"))
+    if speed is not None and not 0 <= speed <= STORM:
+        problems.append(f"--air-speed = {air}: expected 0 m/s to {STORM:g} m/s.")
+    if problems or speed is None:
+        raise ScenarioError(problems)
     return Around(base, fan, cooler, motor, speed, boxed)
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, around: Around) -> str:
+def lost(made: Unit) -> float:
+    """What a unit loses at the name plate by the efficiencies of its stages [W]."""
+    first = made.stages[0]
+    return (1 - math.prod(s.efficiency for s in made.stages)) * first.T * 2 * math.pi * first.n
+
+
+def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float) -> str:
     """The rig file of a unit.
 
     Args:
@@ -123,6 +132,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around) -> str:
         speed: of the input, as it is written
         oil: entry of the catalogue
         around: what stands around it and cools it
+        loss: at the name plate, which a cooler takes [W]
     """
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     worm = isinstance(made.stages[0], WormStage)
@@ -147,7 +157,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around) -> str:
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
         "fan": _fan(made) if around.fan else None,
         "cooled": COOLED,
-        "cooler": _cooler(made, efficiency) if around.cooler else None,
+        "cooler": loss / COOLED if around.cooler else None,
         "foot": _foot(made, around.base),
         "motor": around.motor,
         "air": around.air,
@@ -234,11 +244,6 @@ def _fan(made: Unit) -> dict[str, float]:
     """A fan as wide as a cowl on the smaller side of the housing holds: air along the walls, and its torque."""
     D = SWEEP * min(made.width, made.height)
     return {"D": D, "k_v": AIR * D / 2, "k": FAN * 1.2 * D**5 / (2 * math.pi) ** 3, "share": AIR}
-
-
-def _cooler(made: Unit, efficiency: float) -> float:
-    """Conductance of a cooler that takes all that is lost at the name plate [W/K]."""
-    return (1 - efficiency) * made.stages[0].T * 2 * math.pi * made.stages[0].n / COOLED
 
 
 def _bolted(made: Unit, A: float) -> tuple[float, str]:

@@ -119,9 +119,7 @@ def unit(
     Raises:
         ScenarioError: unknown kinds, or more than so many stages of so much can do
     """
-    check(kinds, ratio, power, speed, bearings)
-    if wanted.centre and kinds[-1] not in CENTRED:
-        raise ScenarioError(f"a {kinds[-1]} stage has no --centre-distance to choose. Leave it out.")
+    check(kinds, ratio, power, speed, bearings, wanted)
     T, n, x = power / speed, speed / (2 * math.pi), SIDE
     found: list[Stage] = []
     left = ratio
@@ -183,7 +181,9 @@ def _sides(box: Sequence[float]) -> str:
     return f"{'x'.join(f'{1000 * side:.0f}' for side in box)} mm"
 
 
-def check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> None:
+def check(
+    kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str, wanted: Wanted = Wanted()
+) -> None:
     """Refuse name plates that the rules have no unit for, all that is wrong at once.
 
     Args:
@@ -192,6 +192,7 @@ def check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearin
         power: at the input [W]
         speed: of the input [rad/s]
         bearings: "ball", "roller" or "auto"
+        wanted: what is known beside the name plate
 
     Raises:
         ScenarioError: unknown kinds, stages where they cannot stand, or more than so many stages of so much can do
@@ -200,23 +201,39 @@ def check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearin
     if not kinds:
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
     problems += _misplaced(kinds)
+    if wanted.centre and kinds and kinds[-1] in KINDS and kinds[-1] not in CENTRED:
+        problems.append(f"a {kinds[-1]} stage has no --centre-distance to choose. Leave it out.")
     if not (power > 0 and speed > 0):
         problems.append('power and speed must be above 0. Give for example --power "7.5 kW" --speed "1450 rpm".')
+    if bearings not in CHOICES:
+        problems.append(f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.')
     if not 0 < ratio < math.inf:
-        raise ScenarioError([*problems, f"a ratio of {ratio:g} is none. Give the input's speed over the output's."])
+        problems.append(f"a ratio of {ratio:g} is none. Give the input's speed over the output's.")
+    else:
+        problems += _too_much(kinds, ratio)
+        if bearings in CHOICES and power > 0 and speed > 0:
+            problems += _too_strong(kinds, ratio, power, speed, bearings)
+    if problems:
+        raise ScenarioError(problems)
+
+
+def _too_much(kinds: Sequence[str], ratio: float) -> Iterator[str]:
+    """A ratio that so many stages have not."""
     least, most = (
         math.prod(limit.get(kind, other) for kind in kinds) ** (1 / max(len(kinds), 1))
         for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
     )
     if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
-        problems.append(
+        yield (
             f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
             f" to {most:.3g}. {_other_stages(kinds, ratio)}"
         )
-    if bearings not in CHOICES:
-        raise ScenarioError([*problems, f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.'])
+
+
+def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> Iterator[str]:
+    """A torque that asks for a larger bore than any bearing has."""
     choices = UNLOADED if IN_LINE in kinds else CHOICES
-    d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0) if speed > 0 else 0.0
+    d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0)
     if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
         needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
         ways = [f"{most / T * power / 1000:.4g} kW or less", f"{speed * T / most * 30 / math.pi:.4g} rpm or more"]
@@ -224,12 +241,10 @@ def check(kinds: Sequence[str], ratio: float, power: float, speed: float, bearin
             ways.insert(1, f"a ratio of {most / T * ratio:.3g} or less")
         if bearings == "ball" and needed <= largest_bore(choices["roller"]) / ROUNDED:
             ways.append("--bearings roller")
-        problems.append(
+        yield (
             f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
             f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}."
         )
-    if problems:
-        raise ScenarioError(problems)
 
 
 def _misplaced(kinds: Sequence[str]) -> Iterator[str]:
