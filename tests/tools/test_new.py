@@ -442,6 +442,35 @@ def test_a_worm_shaft_has_bearings_and_a_seal_of_its_size(gearheat, tmp_path):
     assert found["auto"]["efficiency"] > found["ball"]["efficiency"]
 
 
+@pytest.mark.parametrize(
+    ("stages", "ratio", "kW"),
+    [
+        ("helical,helical", 11.2, 250.0),
+        ("helical,helical,helical", 40.0, 200.0),
+        ("bevel,helical,helical", 25.0, 110.0),
+        ("helical,helical,helical", 31.5, 22.0),
+        ("helical,helical", 20.0, 0.05),
+        ("helical,worm", 60.0, 11.0),
+    ],
+)
+def test_bearings_can_be_built(stages, ratio, kW):
+    """No bore above the root of the pinion on the shaft; those beside each other leave some of the wall."""
+    made = sizing.unit(stages.split(","), ratio, 1000 * kW, 1480 * math.pi / 30)
+    for stage, shaft in zip(made.stages, made.shafts, strict=False):
+        assert shaft.d <= max(stage.root, 0.010) and shaft.lasts
+    sides = [[si_of(catalogue("bearing")[b].values["D"]) for b in shaft.bearings] for shaft in made.shafts]
+    for stage, one, other in zip(made.stages, sides, sides[1:], strict=False):
+        if stage.kind == "helical":
+            assert all((a + b) / 2 < stage.a for a, b in zip(one, other, strict=True))
+
+
+def test_bearings_that_cannot_be_built_are_told(gearheat, tmp_path):
+    plate = ("--stages", "helical,helical", "--ratio", "11.2", "--power", "250 kW", "--speed", "1500 rpm")
+    answer = gearheat("new", "a", *plate, "--bearings", "ball", "-o", tmp_path / "a.toml")
+    assert "6330 and SKF 6215: a bore of 150 mm, 41 mm more than the pinion" in answer.err
+    assert "bearings beside each other overlap by 38 mm" in answer.err
+
+
 @pytest.mark.parametrize("stages", ["helical,helical", "bevel,helical", "planetary"])
 def test_rollers_are_a_choice(gearheat, tmp_path, stages):
     plate = ("--stages", stages, "--ratio", 8, "--power", "15 kW", "--speed", "1450 rpm", "--bearings", "roller")

@@ -18,7 +18,7 @@ SERIES = {"ball": ("SKF 62", "SKF 63"), "tapered": ("SKF 302", "SKF 313", "SKF 3
 #: What the bearings of a unit roll on, and the kinds of shafts with and without tooth forces: the first that lasts.
 CHOICES = {"auto": ("ball", "tapered"), "ball": ("ball",), "roller": ("tapered",)}
 UNLOADED = {"auto": ("ball", "cylindrical"), "ball": ("ball",), "roller": ("cylindrical",)}
-#: Bore over the diameter of the shaft, above which bearings of another kind are taken if theirs is less [1].
+#: Largest bore over the diameter of a shaft without a pinion, above which bearings of another kind are taken [1].
 THICK = 2.5
 
 
@@ -66,32 +66,36 @@ def largest_bore(kinds: Sequence[str]) -> float:
 
 
 def choose(
-    d: float, radial: Sequence[float], axial: float, n: float, kinds: Sequence[str]
-) -> tuple[str, list[tuple[Size, float]]]:
-    """Kind and bearings a and b of a shaft, each with its life [h]: the first kind that lasts, not too large a bore.
+    d: float, most: float, radial: Sequence[float], axial: float, n: float, kinds: Sequence[str]
+) -> list[tuple[str, tuple[Size, Size], tuple[float, float], float]]:
+    """Bearings a and b of a shaft by kind, with their lives [h] and how far their bore is above the largest one [m].
 
+    Those that last come first, of these those without too large a bore, of these in the order of the kinds.
     Balls and cylindrical rollers: a locates. Tapered ones are set against each other; the torque has either direction.
 
     Args:
         d: bore at least [m]
+        most: and at most, where a bearing is as small [m]
         radial: loads of a and b [N]
         axial: force along the shaft [N]
         n: speed of the shaft [1/s]
         kinds: to choose from, keys of `SERIES`
     """
-    a, b = radial
-    found = []
-    for kind in kinds:
-        fitting = [size for size in sizes(kind) if size.d >= 0.999 * d]
+    (a, b), found = radial, []
+    fitting = {kind: [size for size in sizes(kind) if size.d >= 0.999 * d] for kind in kinds}
+    most = max(most, min(size.d for among in fitting.values() for size in among))
+    for kind, among in fitting.items():
         loads = [(a, axial, b), (b, axial if kind == "tapered" else 0.0, a)]
-        if fitting:
-            found.append((kind, [_choose_one(fitting, load, n) for load in loads]))
-    lasting = [pair for pair in found if all(life >= LIFE for _, life in pair[1])]
-    slim = [pair for pair in lasting if all(size.d <= THICK * d for size, _ in pair[1])]
-    return (slim or lasting or [max(found, key=lambda pair: min(life for _, life in pair[1]))])[0]
+        if among:
+            (at_a, life_a), (at_b, life_b) = (_choose_one(among, most, load, n) for load in loads)
+            excess = max(at_a.d, at_b.d) - most
+            found.append((kind, (at_a, at_b), (life_a, life_b), excess if excess > 1e-6 else 0.0))
+    return sorted(found, key=lambda one: (min(one[2]) < LIFE, one[3]))
 
 
-def _choose_one(fitting: Sequence[Size], load: tuple[float, float, float], n: float) -> tuple[Size, float]:
-    """The smallest bearing with the wanted life, else the one with the longest."""
-    lives = [(size, size.life(*load, n)) for size in fitting]
-    return next((pair for pair in lives if pair[1] >= LIFE), max(lives, key=lambda pair: pair[1]))
+def _choose_one(among: Sequence[Size], most: float, load: tuple[float, float, float], n: float) -> tuple[Size, float]:
+    """The smallest bearing with the wanted life, of no more than a bore if there is one, else that of the longest."""
+    lasting = [pair for size in among if (pair := (size, size.life(*load, n)))[1] >= LIFE]
+    slim = [pair for pair in lasting if pair[0].d <= most + 1e-6]
+    longest = max(among, key=lambda size: size.life(*load, n))
+    return next(iter(slim or lasting), (longest, longest.life(*load, n)))

@@ -77,6 +77,7 @@ def new(
         speed: of the input, such as "1450 rpm"
         oil: entry of the catalogue
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
+            or have no room
         fan: on the input shaft
         cooler: of the oil, for the losses at the name plate
         base: what its foot stands on, "concrete" or a "steel" frame; "flange" on a steel plate; "free" on rubber, or

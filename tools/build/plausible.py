@@ -12,6 +12,7 @@ from ...model.files import tables
 from . import sizing
 from .bearings import LIFE
 from .rig_file import Around
+from .shafts import gaps
 from .sizing import Unit
 
 #: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
@@ -92,3 +93,8 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < LIFE:
                 yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
+        if shaft.excess:
+            larger = f"{1000 * shaft.excess:.0f} mm more than the pinion on their shaft is below its teeth"
+            yield f"{' and '.join(dict.fromkeys(shaft.bearings))}: a bore of {1000 * shaft.d:.0f} mm, {larger}."
+    if (gap := min(gaps(made.stages, made.shafts), default=0.0)) < 0:
+        yield f"bearings beside each other overlap by {-1000 * gap:.0f} mm: they ask for a larger centre distance."

@@ -16,7 +16,8 @@ from ...model.units import to_si
 from ...scenarios.ranges import RANGES
 from . import sizing
 from .bearings import LIGHT
-from .sizing import APART, GAP, OVERHANG, SIDE, Unit
+from .shafts import APART, OVERHANG, SIDE
+from .sizing import GAP, Unit
 from .stages import (
     DRAG,
     FACE,

@@ -15,12 +15,11 @@ from typing import Any
 from ...model.errors import ScenarioError
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
-from .bearings import CHOICES, UNLOADED, choose, largest_bore
+from .bearings import CHOICES, UNLOADED, largest_bore
 from .data_sheet import Wanted
+from .shafts import SHEAR, SIDE, Shaft, draw_shafts
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
 
-#: Shear stress of shafts [Pa].
-SHEAR = 25e6
 #: How much whole numbers of teeth may add to a ratio [1].
 ROUNDED = 1.05
 #: Kinds of stages of which a centre distance may be given.
@@ -30,14 +29,8 @@ ROOM = (0.040, 0.050, 0.080)
 #: Kinds of stages that stand last: a worm behind helical stages, planets behind any gears or other planets.
 LAST = "worm"
 IN_LINE = "planetary"
-#: From the middle of a bearing to a gear [m].
-SIDE = 0.020
 #: Between gears [m].
 GAP = 0.010
-#: Distance of the bearings of a bevel pinion over how far its mid face overhangs [1].
-OVERHANG = 2.5
-#: Distance of the bearings of a worm over its wheel's diameter [1].
-APART = 0.9
 #: How deep the smallest wheel dips, in modules.
 DIP = 3.0
 #: Share of what is below the level that is oil [1].
@@ -50,24 +43,6 @@ SHARE = 0.16
 REACHED = 0.55
 #: Speed of the oil along the walls over that of the pitch line [1].
 ALONG = 0.5
-
-
-@dataclass(frozen=True)
-class Shaft:
-    """A shaft: torque, speed [1/s], diameters of its larger and smaller seat and that by torsion, places of its gears
-    and bearing b, both bearings, which are of one kind, with their lives [h].
-    """
-
-    T: float
-    n: float
-    d: float
-    d_seal: float
-    d_torsion: float
-    places: tuple[float, ...]
-    span: float
-    bearings: tuple[str, str]
-    lives: tuple[float, float]
-    kind: str
 
 
 @dataclass(frozen=True)
@@ -113,7 +88,7 @@ def unit(
         ratio: speed of the input over that of the output
         power: at the input [W]
         speed: of the input [rad/s]
-        bearings: "ball", "roller", or "auto" for rollers where balls do not last
+        bearings: "ball", "roller", or "auto" for rollers where balls do not last or have no room
         wanted: what is known beside the name plate
 
     Raises:
@@ -129,7 +104,7 @@ def unit(
         found.append(made)
         T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
     span = x - GAP + SIDE
-    shafts = tuple(_shaft(found, k, span, bearings) for k in range(len(found) + 1))
+    shafts = draw_shafts(found, span, bearings)
     wall = max(0.008, 0.025 * found[-1].along + 0.003)
     tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
     length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
@@ -298,33 +273,6 @@ def _share(ratio: float, kinds: Sequence[str]) -> float:
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
     least, most = (ratio / math.prod(limit.get(k, 1.0) for k in kinds[1:]) for limit in (LEAST, MOST))
     return float(min(max(share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))
-
-
-def _shaft(stages: Sequence[Stage], k: int, span: float, bearings: str) -> Shaft:
-    """The shaft behind k stages: its diameter by torsion, its bearings by bore and life."""
-    before, behind = stages[k - 1 : k] if k else (), stages[k : k + 1]
-    T = behind[0].T if behind else before[0].T * before[0].u
-    n = behind[0].n if behind else before[0].n / before[0].u
-    d = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
-    wheels = [s for s in stages if not isinstance(s, PlanetaryStage)]  # forces on sun and carrier are in balance
-    span = max((s.x + s.b / 2 for s in wheels), default=span / len(stages) - SIDE) + SIDE
-    gears = [(s.forces[1], s.x, s.r_2) for s in before if s in wheels]
-    gears += [(s.forces[0], s.x, s.r_1) for s in behind if s in wheels]
-    if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
-        beyond = SIDE + stages[0].b / 2
-        span = OVERHANG * beyond
-        gears = [(stages[0].forces[0], span + beyond, stages[0].r_1)]
-    elif behind and isinstance(behind[0], WormStage):
-        span = max(APART * 2 * behind[0].r_2, span if before else 0.0)
-        gears[-1] = behind[0].forces[0], span / 2, behind[0].r_1
-    axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
-    planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
-    far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]
-    near = [sum(p[i] for p in planes) - far[i] for i in (0, 1)]
-    kinds = (CHOICES if gears else UNLOADED)[bearings]
-    kind, ((a, life_a), (b, life_b)) = choose(d, [math.hypot(*F) for F in (near, far)], axial, n, kinds)
-    places = tuple(x for _, x, _ in gears)
-    return Shaft(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (life_a, life_b), kind)
 
 
 def dips(stage: Stage) -> bool:

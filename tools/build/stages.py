@@ -52,6 +52,8 @@ LEAST_PLANET = 24
 MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0)
 R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
 CENTRES = tuple(m * 10**k for k in (1, 2, 3) for m in R_20)
+#: Centre distance at which the smallest bearings have room beside each other [mm].
+ROOMY = 33.0
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 #: Efficiency of a stage with its bearings, for the load at the output [1].
@@ -81,6 +83,13 @@ class Stage:
     count: ClassVar[int] = 1
     #: Sense of rotation of what is driven, 1 for that of the pinion.
     turn: ClassVar[int] = -1
+    #: Whether its shafts are beside each other.
+    parallel: ClassVar[bool] = True
+
+    @property
+    def root(self) -> float:
+        """Diameter that no seat on the pinion's shaft is above: that below its teeth."""
+        return 2 * (self.r_1 - 1.25 * self.m_n)
 
     @property
     def u(self) -> float:
@@ -146,6 +155,13 @@ class BevelStage(Stage):
 
     m_et: float
 
+    parallel: ClassVar[bool] = False
+
+    @property
+    def root(self) -> float:
+        """That at the pinion's outer end."""
+        return self.m_et * (self.z_1 - 2.5)
+
     @property
     def delta_1(self) -> float:
         """Pitch angle of the pinion."""
@@ -180,6 +196,13 @@ class WormStage(Stage):
     """A worm, as pinion, and its wheel; `m_n` is the axial module, `d_1` the mean diameter of the worm."""
 
     d_1: float
+
+    parallel: ClassVar[bool] = False
+
+    @property
+    def root(self) -> float:
+        """The mean one: threads run out into a shaft that is thicker than they are deep."""
+        return self.d_1
 
     @property
     def r_1(self) -> float:
@@ -230,6 +253,7 @@ class PlanetaryStage(Stage):
 
     count: ClassVar[int] = PLANETS
     turn: ClassVar[int] = 1  # the carrier turns with the sun
+    parallel: ClassVar[bool] = False
 
     @property
     def u(self) -> float:
@@ -280,7 +304,7 @@ def _cylindrical(kind: str, u: float, T: float, n: float, x: float, a: float | N
     if a is not None and a < least:
         said = f"{1000 * a:g} mm holds no gears of {MODULES[0]:g} mm modules with a ratio of {u:.3g}"
         raise ScenarioError(f"--centre-distance of {said}. Give {1000 * least:.3g} mm or more.")
-    a = a or _standard(max(d_1 * (1 + u) / 2, least / SHORT))
+    a = a or _standard(max(d_1 * (1 + u) / 2, least / SHORT, ROOMY / 1000 / SHORT))
     d_1 = 2 * a / (1 + u)
     m_n = max((m for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH), default=MODULES[0]) / 1000
     teeth = round(2 * a * math.cos(aim) / m_n)
