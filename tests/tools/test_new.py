@@ -94,6 +94,23 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     assert "the catalogue has no stronger one" in answer.err
 
 
+def test_what_turns_too_fast_for_a_bath_is_told(gearheat, tmp_path):
+    plate = ("--stages", "helical", "--ratio", 5, "--power", "5 MW", "--oil", "ISO VG 46", "--cooler")
+    answer = gearheat("new", "a", *plate, "--speed", "10000 rpm", "-o", tmp_path / "fast.toml")
+    for words in ("moves at 87 m/s", "n d_m = 2.2e+06 mm/min", "rubs at 73 m/s", "friction_schlenk, v_sum = 60"):
+        assert words in answer.err
+    plate = ("--stages", "helical", "--ratio", 5, "--power", "5 kW", "--speed", "6000 rpm")
+    assert not gearheat("new", "a", *plate, "-o", tmp_path / "a.toml").err
+
+
+def test_a_centre_distance_that_the_load_does_not_suit_is_told(gearheat, tmp_path):
+    plate = ("--stages", "helical,helical", "--ratio", 12.5, "--power", "75 kW", "--speed", "1480 rpm")
+    answer = gearheat("new", "a", *plate, "--centre-distance", "100 mm", "-o", (path := tmp_path / "a.toml"))
+    assert "K* is 57.9 N/mm2, usual 1 to 6: the load asks for 280 mm" in answer.err
+    assert "(u + 1)/u of 57.9 N/mm2 by a = 100 mm of a data sheet" in path.read_text("utf-8")
+    assert "K*" not in gearheat("new", "b", *plate, "--centre-distance", "250 mm", "-o", tmp_path / "b.toml").err
+
+
 def test_it_is_what_one_would_draw(made):
     _, answer = made("two")
     first, second = answer.json["stages"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 from ...model.core.flat import FlatModel
 from ...model.errors import GearheatError, Problems, ScenarioError, SolveError, suggestion
+from ...model.run.result import Result
 from ...model.run.steady import steady
 from ...model.units import to_si
 from ...scenarios.entries import catalogue
@@ -20,7 +21,7 @@ from ..describe.rig import Rig
 from ..show.console import writable, write
 from ..show.endings import fitting
 from ..solve.settings import flat_of
-from ..solve.steady import SteadyState, conditions
+from ..solve.steady import SteadyState, conditions, outside_of
 from .data_sheet import Wanted, wanted_of
 from .plausible import WARM, no_load, notes, usual
 from .rig_file import Around, around_of, lost, text
@@ -30,6 +31,8 @@ from .sizing import Unit, check, unit
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 #: Times that a rig with a cooler is solved, each for the cooler of the loss before.
 COOLERS = 3
+#: Least share of the loss of a part, of which it is told that its laws are outside their range [1].
+MATTERS = 0.1
 #: Kind of stage -> the size by which one is known.
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 
@@ -146,7 +149,7 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         scenario = read_rig(path)
         flat = flat_of(scenario)
         point = conditions(scenario, flat)
-        rest = SteadyState(scenario, flat, steady(flat, point), backward=False)
+        rest = SteadyState(scenario, flat, result := steady(flat, point), backward=False)
         loss = rest["efficiency.P_loss"]
     idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
     kinds = [s.kind for s in made.stages]
@@ -163,6 +166,7 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         "no_load_W": float(idle[0]),
         "losses_W": rest.losses_by_kind(),
         "efficiency": rest["efficiency.eta"],
+        "outside": list(dict.fromkeys(_outside(result))),
         "without_fan": _without_fan(flat, point) if around.fan else None,
         "usual": {
             "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, made.ratio),
@@ -173,6 +177,15 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         "foot_share": foot / (loss + (around.motor or 0.0)),
     }
     return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"], around)))
+
+
+def _outside(result: Result) -> Iterator[str]:
+    """Laws far outside their range in parts that have no small share of the loss."""
+    for law in outside_of(result):
+        loss = f"{law['part']}.P_loss"
+        if law["level"] == "warning" and loss in result and result[loss][0] > MATTERS * result["efficiency.P_loss"][0]:
+            low, high = law["range"]
+            yield f"{law['part']}: {law['law']}, {law['argument']} = {law['met'][1]:.4g} (valid {low:g} to {high:g})"
 
 
 def _without_fan(flat: FlatModel, point: Mapping[str, float]) -> dict[str, float] | None:

@@ -14,6 +14,7 @@ from .bearings import LIFE
 from .rig_file import Around
 from .shafts import gaps
 from .sizing import Unit
+from .stages import K_STAR, MAKE, T_WORM, WormStage
 
 #: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
@@ -23,6 +24,13 @@ WARM = (20.0, 100.0)
 HALL = 20.0
 #: Fastest motors of such units [rpm].
 FAST = 6000
+#: Fastest pitch line of gears that dip [m/s], mean diameter times speed of bearings in a bath [mm/min], and lips of NBR
+#: and FKM [m/s]: usual limits.
+DIPPING = 20.0
+N_D = 1e6
+LIPS = (15.0, 35.0)
+#: Usual load of a stage over that of the rule.
+LOADED = (0.4, 2.4)
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -64,8 +72,11 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         speed: of the input [rad/s]
         around: what stands around it and cools it
     """
-    if (rpm := 30 / math.pi * speed) > FAST:
-        yield f"the input turns at {rpm:,.0f} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
+    if (rpm := round(30 / math.pi * speed)) > FAST:
+        yield f"the input turns at {rpm:,} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
+    yield from _too_fast(made)
+    if made.centre:
+        yield from _loaded(made)
     eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
     height = sizing.height_of_axes(made)
     deepest = height - max(map(sizing.lowest, made.stages))
@@ -89,6 +100,45 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         kind, loss = next(iter(sizes["losses_W"].items()))
         share = loss / sum(sizes["losses_W"].values())
         yield f"the largest loss is that of {kind}, {100 * share:.0f} %: {MACHINES['advice'][kind]}."
+    if sizes["outside"]:
+        yield f"laws far outside their range have a tenth of the loss or more: {'; '.join(sizes['outside'])}."
+    yield from _bearings(made)
+
+
+def _too_fast(made: Unit) -> Iterator[str]:
+    """What turns faster than a bath of oil, rolling bearings or lip seals can do."""
+    if (v := max(stage.speed for stage in made.stages)) > DIPPING:
+        yield (
+            f"what dips into the oil moves at {v:.0f} m/s, and gears dip up to about {DIPPING:g} m/s: faster ones have"
+            " oil sprayed on them, which is not drawn. Churning is less then."
+        )
+    n_d = max(60e3 * s.n * (s.d + max(s.outer)) / 2 for s in made.shafts)
+    if n_d > N_D:
+        yield (
+            f"rolling bearings turn at n d_m = {n_d:.2g} mm/min, and those in a bath of oil up to about {N_D:.0e}:"
+            " faster shafts have plain bearings, or oil sprayed into rolling ones."
+        )
+    v = max(math.pi * s.n * s.d_seal for s in (made.shafts[0], made.shafts[-1]))
+    if v > LIPS[0]:
+        other = "" if v <= LIPS[1] else ", and no lip beyond: faster shafts have labyrinths"
+        yield f"a lip seal rubs at {v:.0f} m/s: NBR stands about {LIPS[0]:g} m/s, FKM {LIPS[1]:g} m/s{other}."
+
+
+def _loaded(made: Unit) -> Iterator[str]:
+    """A last stage whose load does not suit the centre distance that is given."""
+    s = made.stages[-1]
+    rule, named = (T_WORM, "the wheel's torque over a3") if isinstance(s, WormStage) else (K_STAR, "K*")
+    if not LOADED[0] < s.intensity / rule < LOADED[1]:
+        low, high = (part * rule / 1e6 for part in LOADED)
+        own = MAKE[s.kind](s.kind, s.u, s.T, s.n, s.x, None).a
+        yield (
+            f"--centre-distance: {named} is {s.intensity / 1e6:.3g} N/mm2, usual {low:.2g} to {high:.2g}: the load asks"
+            f" for {1000 * own:.0f} mm."
+        )
+
+
+def _bearings(made: Unit) -> Iterator[str]:
+    """Bearings that do not last or have no room."""
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < LIFE:

@@ -197,9 +197,13 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
         shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
+        if made.centre:
+            rule = f"a = {_mm(s.a)} mm of a data sheet: wheel's torque over a3 of {s.intensity / 1e6:.3g} N/mm2"
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        if made.centre and k == len(made.stages) - 1:
+            rule = f"F_t/(b d_1) (u + 1)/u of {s.intensity / 1e6:.3g} N/mm2 by a = {_mm(s.a)} mm of a data sheet"
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
     found: dict[str, Any] = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
     found |= {"driver": "pinion", "driven": "wheel", "needles": None} | shape

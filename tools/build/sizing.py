@@ -47,7 +47,7 @@ ALONG = 0.5
 
 @dataclass(frozen=True)
 class Unit:
-    """A gear unit: stages, shafts, the box around them, and the oil where a data sheet says it [m3]."""
+    """A gear unit: stages, shafts, the box around them; of a data sheet the oil [m3] and last centre distance [m]."""
 
     stages: tuple[Stage, ...]
     shafts: tuple[Shaft, ...]
@@ -56,6 +56,7 @@ class Unit:
     width: float
     height: float
     volume: float | None = None
+    centre: float | None = None
 
     @property
     def ratio(self) -> float:
@@ -120,7 +121,7 @@ def unit(
         height = max([2 * ring + 0.040, *(2 * max(tip) + 0.080 for _, tip in gears)]) + 2 * wall
     else:
         length += _first(found[0], shafts[0])
-    drawn = Unit(tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume)
+    drawn = Unit(tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume, wanted.centre)
     return _boxed(drawn, wanted)
 
 

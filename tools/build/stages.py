@@ -122,6 +122,16 @@ class Stage:
         return self.r_2
 
     @property
+    def speed(self) -> float:
+        """Of what dips into the oil [m/s]: the pitch line, of a set of planets their reach."""
+        return 2 * math.pi * self.n * self.r_1
+
+    @property
+    def intensity(self) -> float:
+        """Load intensity F_t / (b d_1) (u + 1)/u [Pa]."""
+        return self.T / (2 * self.b * self.r_1**2) * (self.u + 1) / self.u
+
+    @property
     def swept(self) -> float:
         """Churning torque over half the oil's density and the square of the speed [m5], a torque coefficient of 1."""
         return self.b * self.reach**4
@@ -220,6 +230,11 @@ class WormStage(Stage):
         return math.atan(self.z_1 * self.m_n / self.d_1)
 
     @property
+    def intensity(self) -> float:
+        """The wheel's ideal torque over the cube of the centre distance [Pa]."""
+        return self.T * self.u / self.a**3
+
+    @property
     def mu(self) -> float:
         """Friction at the speed of the name plate, in mineral oil."""
         mu_0T = worm_base_friction(2 * math.pi * self.n * self.r_1 / math.cos(self.gamma), 1.0)
@@ -269,6 +284,11 @@ class PlanetaryStage(Stage):
     def reach(self) -> float:
         """Of the planets round the axis."""
         return self.r_1 + 2 * self.r_2
+
+    @property
+    def speed(self) -> float:
+        """Of the tips of the planets round the axis."""
+        return 2 * math.pi * self.n / self.u * self.reach
 
     @property
     def swept(self) -> float:
