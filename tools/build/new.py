@@ -33,6 +33,9 @@ STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 COOLERS = 3
 #: Least share of the loss of a part, of which it is told that its laws are outside their range [1].
 MATTERS = 0.1
+#: What name plates call an oil beside its class (DIN 51502, makers) -> its base, None for a word that tells none.
+BASES = {"iso": None, "vg": None, "clp": None, "mineral": "mineral", "min": "mineral", "pao": "PAO", "hc": "PAO"}
+BASES |= {"shc": "PAO", "pag": "PAG", "pg": "PAG", "ester": "ester", "e": "ester"}
 #: Kind of stage -> the size by which one is known.
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 
@@ -78,7 +81,7 @@ def new(
         ratio: speed of the input over that of the output
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"
-        oil: entry of the catalogue
+        oil: entry of the catalogue, or what a name plate has, such as "CLP PG 460"
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
             or have no room
         fan: on the input shaft
@@ -103,9 +106,9 @@ def new(
         True
     """
     words = stages.split(",") if isinstance(stages, str) else stages
-    kinds = [kind.strip() for kind in words if kind.strip()]
+    kinds = [kind.strip().lower() for kind in words if kind.strip()]
     problems = Problems()
-    watts = problems.of(lambda: to_si(power, "W", name="--power"))
+    watts = problems.of(lambda: _watts(power))
     w = problems.of(lambda: to_si(speed, "rad/s", name="--speed"))
     plate = 1.0 if watts is None else watts, 100.0 if w is None else w  # what is wrong else is told, too
     wanted = problems.of(lambda: wanted_of(centre_distance, housing, oil_volume))
@@ -169,7 +172,7 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         "outside": list(dict.fromkeys(_outside(result))),
         "without_fan": _without_fan(flat, point) if around.fan else None,
         "usual": {
-            "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, made.ratio),
+            "efficiency_pct": usual(kinds, kW := rest["input.P"] / 1000, made.asked),
             "oil_degC": WARM,
             "no_load_pct": no_load(kinds, kW),
         },
@@ -198,10 +201,21 @@ def _without_fan(flat: FlatModel, point: Mapping[str, float]) -> dict[str, float
 
 
 def _oil(name: str) -> str:
-    """The catalogue's name of an oil; one of a class alone is taken for a mineral oil."""
-    for known in (name, f"{name} mineral"):
-        if known in catalogue("oil"):
-            if "c_p" not in catalogue("oil")[known].values:
-                raise ScenarioError(f'"{known}" is a grease. Name an oil. See `gearheat list`.')
-            return known
-    raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
+    """The catalogue's name of an oil, by the words and the class of a name plate; one without a base is mineral."""
+    words, known = re.findall(r"[^\W\d]+|\d+", name.lower()), name
+    bases = {BASES[word] for word in words if word in BASES} - {None} or {"mineral"}
+    classes = [word for word in words if word.isdigit()]
+    if name not in catalogue("oil") and len(words) > 1 and len(classes) == len(bases) == 1:
+        known = f"ISO VG {classes[0]} {bases.pop()}" if {*words} <= {*BASES, *classes} else name
+    if known not in catalogue("oil"):
+        raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
+    if "c_p" not in catalogue("oil")[known].values:
+        raise ScenarioError(f'"{known}" is a grease. Name an oil. See `gearheat list`.')
+    return known
+
+
+def _watts(power: str) -> float:
+    """The power at the input [W], a mechanical one."""
+    if re.search(r"V\W*A\s*$", power):
+        raise ScenarioError(f'--power = "{power}" is apparent power. Give that of the shaft, such as "7.5 kW".')
+    return to_si(power, "W", name="--power")

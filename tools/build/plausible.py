@@ -14,7 +14,8 @@ from .bearings import LIFE
 from .rig_file import Around
 from .shafts import gaps
 from .sizing import Unit
-from .stages import K_STAR, MAKE, T_WORM, WormStage
+from .stages import WormStage
+from .teeth import K_STAR, MAKE, T_WORM
 
 #: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
@@ -29,6 +30,8 @@ FAST = 6000
 DIPPING = 20.0
 N_D = 1e6
 LIPS = (15.0, 35.0)
+#: How far the ratio may be from that of the name plate untold [1].
+OFF = 0.01
 #: Usual load of a stage over that of the rule.
 LOADED = (0.4, 2.4)
 #: Efficiency below which standard sizes do not fit the power.
@@ -74,6 +77,8 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
     """
     if (rpm := round(30 / math.pi * speed)) > FAST:
         yield f"the input turns at {rpm:,} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
+    if abs(off := made.ratio / made.asked - 1) > OFF:
+        yield f"the ratio is {made.ratio:.4g}, {100 * off:+.1f} % from {made.asked:g}, as teeth are whole."
     yield from _too_fast(made)
     if made.centre:
         yield from _loaded(made)

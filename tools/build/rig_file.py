@@ -18,21 +18,8 @@ from . import sizing
 from .bearings import LIGHT
 from .shafts import APART, OVERHANG, SIDE
 from .sizing import GAP, Unit
-from .stages import (
-    DRAG,
-    FACE,
-    K_BEVEL,
-    K_STAR,
-    KINDS,
-    SLIM,
-    T_WORM,
-    WIDTH,
-    Y_W,
-    BevelStage,
-    PlanetaryStage,
-    Stage,
-    WormStage,
-)
+from .stages import DRAG, KINDS, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
+from .teeth import FACE, K_BEVEL, K_STAR, SLIM, T_WORM, WIDTH
 
 #: Fastest air along a housing [m/s].
 STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")

@@ -18,7 +18,8 @@ from ...scenarios.entries import catalogue
 from .bearings import CHOICES, UNLOADED, largest_bore
 from .data_sheet import Wanted
 from .shafts import SHEAR, SIDE, Shaft, draw_shafts
-from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
+from .stages import KINDS, LEAST, MOST, BevelStage, PlanetaryStage, Stage, WormStage
+from .teeth import MAKE
 
 #: How much whole numbers of teeth may add to a ratio [1].
 ROUNDED = 1.05
@@ -47,8 +48,11 @@ ALONG = 0.5
 
 @dataclass(frozen=True)
 class Unit:
-    """A gear unit: stages, shafts, the box around them; of a data sheet the oil [m3] and last centre distance [m]."""
+    """A gear unit: ratio that is asked for, stages, shafts, the box around them; of a data sheet the oil [m3] and the
+    last centre distance [m].
+    """
 
+    asked: float
     stages: tuple[Stage, ...]
     shafts: tuple[Shaft, ...]
     wall: float
@@ -121,7 +125,7 @@ def unit(
         height = max([2 * ring + 0.040, *(2 * max(tip) + 0.080 for _, tip in gears)]) + 2 * wall
     else:
         length += _first(found[0], shafts[0])
-    drawn = Unit(tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume, wanted.centre)
+    drawn = Unit(ratio, tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume, wanted.centre)
     return _boxed(drawn, wanted)
 
 
