@@ -42,6 +42,8 @@ ROOMY = 33.0
 HELIX = (math.radians(8.0), math.radians(20.0))
 #: How close to a ratio is close enough for a stage [1].
 CLOSE = 0.0125
+#: The same of bevel gears, which run in pairs and had better have no common factor [1].
+EVEN = 0.02
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 
@@ -76,10 +78,16 @@ def _numbers(u: float, sums: Sequence[tuple[float, int]]) -> tuple[float, int, i
     found = []
     for rank, (m_n, total) in enumerate(sums):
         near = round(total / (1 + u))
-        for z_1 in range(max(FEWEST, near - 2), near + 3):
-            pair = z_1, total - z_1
-            found.append((max(_off(*pair, u), CLOSE), rank, _fault(*pair, u), (m_n, *pair)))
-    return min(found)[3]
+        found += [(rank, m_n, z, total - z) for z in range(max(FEWEST, near - 2), near + 3)]
+    return _first_close(u, found)
+
+
+def _first_close(
+    u: float, found: Sequence[tuple[int, float, int, int]], close: float = CLOSE
+) -> tuple[float, int, int]:
+    """Of ranks, modules and numbers of teeth: the first that come close enough, without a common factor if they can."""
+    best = min(found, key=lambda one: (max(_off(one[2], one[3], u), close), one[0], _fault(one[2], one[3], u)))
+    return best[1:]
 
 
 def _bevel(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> BevelStage:
@@ -87,8 +95,8 @@ def _bevel(kind: str, u: float, T: float, n: float, x: float, a: float | None = 
     slim = FACE / (1 - FACE / 2) / 2  # face width over mean diameter of the pinion and sqrt(u^2 + 1)
     d_m = (2 * T / (slim * u * K_BEVEL)) ** (1 / 3)
     usual = next(z for most, z in BEVEL_TEETH.items() if u <= most + 1e-9)
-    pairs = [(z, round(u * z)) for z in (usual, usual + 1, usual - 1, usual + 2, usual - 2)]
-    z_1, z_2 = min(pairs, key=lambda pair: max(_off(pair[0], pair[1], u), CLOSE))
+    tried = [(abs(k), 0.0, usual + k, round(u * (usual + k)) + j) for k in (0, 1, -1, 2, -2) for j in (-1, 0, 1)]
+    _, z_1, z_2 = _first_close(u, tried, EVEN)
     sin_1, sin_2 = (z / math.hypot(z_1, z_2) for z in (z_1, z_2))
     d_e = 0.005 * math.ceil(d_m * z_2 / z_1 / (1 - FACE / 2) / 0.005)
     b = math.floor(1000 * FACE * d_e / 2 / sin_2) / 1000
