@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+import numpy as np
+
 from ..model.core.flat import Quantity
-from ..model.errors import ScenarioError
+from ..model.errors import Problems, ScenarioError
+from ..model.units import example, to_si
+from .duty import TIME
 from .load import load
 from .scenario import Scenario
 
@@ -24,7 +30,7 @@ class HoldsScenario(Protocol):
 #: A name of a shipped rig, a rig file, or a rig in Python.
 RigLike = str | Path | Scenario | HoldsScenario
 #: What a user sets: name -> text with a unit, quantity of pint, or number in SI; or texts "NAME=VALUE".
-Settings = Mapping[str, Any] | str | Sequence[str]
+Settings = Mapping[str, Any] | str | Sequence[str | tuple[str, Any]] | None
 
 
 def scenario_of(rig: RigLike) -> Scenario:
@@ -45,34 +51,101 @@ def scenario_of(rig: RigLike) -> Scenario:
     return rig.scenario
 
 
-def spell(value: Any, quantity: Quantity | None = None) -> str:
+def spell(value: Any, quantity: Quantity | None = None, name: str = "") -> str:
     """A value as the command line has it.
 
     Args:
         value: text, number in SI, or quantity of pint
         quantity: what it is of, None for a choice or an entry of a catalogue
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it is none of them
     """
     if isinstance(value, str | bool):
         return str(value)
-    if (number := getattr(value, "magnitude", None)) is not None:
-        return f"{float(number)!r} {value.units:~C}"
     unit = "1" if quantity is None else quantity.unit
-    return repr(float(value)) if unit == "1" else f"{float(value)!r} {unit}"
+    with suppress(TypeError, ValueError):
+        number = getattr(value, "magnitude", value)
+        if not np.ndim(number) and not np.iscomplexobj(number):
+            if number is not value:
+                return f"{float(number)!r} {value.units:~C}"
+            return repr(float(value)) if unit == "1" else f"{float(value)!r} {unit}"
+    raise ScenarioError(
+        f'{name or "value"} = {reprlib.repr(value)} is no value. Give one text, like "{example(unit)}", number in SI,'
+        " or quantity of pint."
+    )
 
 
-def listed(names: str | Iterable[str]) -> list[str]:
-    """Texts as a list; one text is a list of one."""
-    return [names] if isinstance(names, str) else list(names)
+def in_seconds(value: Any, name: str) -> float:
+    """A time [s].
+
+    Args:
+        value: text with a unit, number in SI, or quantity of pint
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it is no time
+    """
+    return to_si(spell(value, TIME, name), "s", name=name)
+
+
+def listed(names: Any, name: str = "names") -> list[str]:
+    """Texts as a list; one text is a list of one, None is none.
+
+    Args:
+        names: one text, or several
+        name: what to call them in a message
+
+    Raises:
+        ScenarioError: they are no texts
+    """
+    if isinstance(names, str) or names is None:
+        return [] if names is None else [names]
+    found = list(names) if isinstance(names, Iterable) else [names]
+    if wrong := [one for one in found if not isinstance(one, str)]:
+        raise ScenarioError(f"{name}: {wrong[0]!r} is no text. Give a text, or a list of texts.")
+    return found
+
+
+def pairs_of(given: Any) -> list[tuple[str, Any] | str]:
+    """What is given by name, as pairs of name and value; texts "NAME=VALUE" stay as they are, None is nothing.
+
+    Args:
+        given: anything with `items`, pairs, such texts, or one of these texts
+
+    Raises:
+        ScenarioError: it is none of them
+    """
+    if given is None or isinstance(given, str):
+        return [] if given is None else [given]
+    items = given.items() if hasattr(given, "items") else given
+    found: list[Any] = list(items) if isinstance(items, Iterable) else [items]
+    for one in found:
+        pair = isinstance(one, tuple | list) and len(one) == 2 and isinstance(one[0], str)
+        if not pair and not isinstance(one, str):
+            raise ScenarioError(
+                f'{reprlib.repr(one)} gives no name a value. Write {{"room.T": "25 degC"}}, pairs of name and value, or'
+                ' texts such as "room.T=25 degC".'
+            )
+    return [one if isinstance(one, str) else (one[0], one[1]) for one in found]
 
 
 def assignments_of(given: Settings, known: Callable[[], Mapping[str, Quantity]]) -> list[str]:
     """What is set as texts "NAME=VALUE".
 
     Args:
-        given: by name, or such texts
+        given: by name, pairs, such texts, or None
         known: tells the quantity of each name that may be set; asked where values have names
+
+    Raises:
+        ScenarioError: all that is no value of a name
     """
-    if not isinstance(given, Mapping):
-        return listed(given)
-    quantities = known()
-    return [f"{name}={spell(value, quantities.get(name))}" for name, value in given.items()]
+    pairs, problems, found = pairs_of(given), Problems(), list[str]()
+    quantities = {} if all(isinstance(one, str) for one in pairs) else known()
+    for one in pairs:
+        with problems:
+            named = one if isinstance(one, str) else f"{one[0]}={spell(one[1], quantities.get(one[0]), one[0])}"
+            found.append(named)
+    problems.check()
+    return found

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -21,8 +24,12 @@ from .schedule import Schedule
 
 #: Rows of a result where nothing else is asked for [s].
 OUTPUT_STEP = 60.0
-#: Rows of a result at most.
-MOST_ROWS = 5e6
+#: Numbers that are held at once for each state, input, parameter and expression of a row, with what makes them [1].
+COPIES = 5
+#: Memory that a run may take where the system does not tell how much there is [bytes].
+USUAL_MEMORY = 8e9
+#: Where Linux tells how much memory a container may take [bytes].
+CONTAINER = Path("/sys/fs/cgroup/memory.max")
 
 #: Methods by name.
 METHODS = ("idas", "lsoda")
@@ -42,6 +49,7 @@ def simulate(
     tolerance: float = 1e-8,
     method: str = "idas",
     through: Through | None = None,
+    every: float = OUTPUT_STEP,
 ) -> Result:
     """Run a model through a duty.
 
@@ -51,11 +59,12 @@ def simulate(
         start: states at the beginning, by path (SI)
         values: parameters and constant inputs, by path (SI)
         times: output times [s], not decreasing; a row at a jump shows the inputs after it, a time given twice both
-            sides. Without it: every 60 s, and both sides of every jump
+            sides. Without it: as often as `every` says, and both sides of every jump
         tolerance: of the local error, relative to each state's nominal and its distance from the start
         method: "idas" (SUNDIALS BDF for differential-algebraic systems, through CasADi) or "lsoda" (SciPy, one Python
             call per right-hand side)
         through: an integration of one's own, to the same tolerance; the method says why where it does not get through
+        every: time between two rows [s]
 
     Returns:
         all states, inputs and outputs, with the energy audit from integrated powers
@@ -69,7 +78,11 @@ def simulate(
         raise ScenarioError(asked)
     begin = point(flat, values, start, who="simulate", taken=schedule.values)
     stretches = _stretches(flat, schedule, begin.u)
-    rows = _rows(schedule, stretches) if times is None else _pick_rows(np.asarray(times, dtype=float), stretches)
+    rows = (
+        _rows(flat, schedule, stretches, every)
+        if times is None
+        else _pick_rows(np.asarray(times, dtype=float), stretches)
+    )
     u = np.hstack([stretch.inputs(rows.time[here]) for stretch, here in rows.of(stretches)])
     if through is not None and (found := through(begin, rows.time)) is not None:
         x, evaluated, energy = found
@@ -151,20 +164,37 @@ def _stretches(flat: FlatModel, schedule: Schedule, u: np.ndarray) -> list[Stret
     return found
 
 
-def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
+def _rows(flat: FlatModel, schedule: Schedule, stretches: Sequence[Stretch], step: float) -> _Rows:
     """A row every output step, and one at both ends of every stretch."""
-    if (n := (schedule.stop - schedule.start) / OUTPUT_STEP) > MOST_ROWS:
+    if not step > 0:
+        raise ScenarioError(f"simulate: a row every {step:g} s. Give a time above 0.")
+    n = (schedule.stop - schedule.start) / step + 2 * len(stretches)
+    groups = (*flat.states, *flat.inputs, *flat.parameters)
+    width = len(groups) + sum(flat.function.numel_out(name) for name in flat.function.name_out())
+    if (needed := 8.0 * COPIES * n * width) > (there := memory()):
         raise ScenarioError(
-            f"simulate: a duty of {schedule.stop - schedule.start:g} s has {n:.3g} rows of {OUTPUT_STEP:g} s, at most"
-            f" {MOST_ROWS:g} are written. Give a shorter duty."
+            f"simulate: {schedule.stop - schedule.start:g} s with a row every {step:g} s and {len(stretches) - 1} jumps"
+            f" are {n:.3g} rows, which take about {needed / 1e9:.3g} GB of memory; there are {there / 1e9:.3g} GB."
+            " Give more time between the rows, or a shorter duty."
         )
-    every = np.arange(schedule.start, schedule.stop, OUTPUT_STEP)
+    every = np.arange(schedule.start, schedule.stop, step)
     times = []
     for s in stretches:
         inside = every[slice(*np.searchsorted(every, (s.begin, s.end)))]
         times.append(_merge_times(np.array([s.begin, s.end]), inside))
     owners = [np.full(len(t), k) for k, t in enumerate(times)]
     return _Rows(np.concatenate(times), np.concatenate(owners))
+
+
+def memory() -> float:
+    """Memory of this machine, or what its container may take of it [bytes]."""
+    try:
+        held = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, OSError, ValueError):  # Windows has no such call
+        held = USUAL_MEMORY
+    with suppress(OSError, ValueError):  # "max" is no number: no limit
+        held = min(held, float(CONTAINER.read_text(encoding="ascii")))
+    return held
 
 
 def _pick_rows(times: np.ndarray, stretches: Sequence[Stretch]) -> _Rows:

@@ -5,14 +5,16 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+import gearheat as gh
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.table import Sensor
+from gearheat.tools.diagnose.request import Request
 from gearheat.tools.show.event_lines import as_text, opened
 from gearheat.tools.watch.page import page_of
 from gearheat.tools.watch.sources import Files, Source, Stream
 from gearheat.tools.watch.store import Store
-from gearheat.tools.watch.watch import SILENCE, Watch
+from gearheat.tools.watch.watch import SILENCE, Watch, identity
 
 HEAD = "time_utc,n_hss_rpm,T_hss_Nm,T_nacelle_C,T_sump_C"
 EVERY = 5
@@ -226,3 +228,11 @@ def test_a_fleet_on_the_workers_of_a_cluster(gearheat, tmp_path: Path, monkeypat
         for name in ("here.jsonl", "there.jsonl")
     )
     assert here == there and len(here) == 4 and all("the machine stands still" in line for line in here)
+
+
+def test_a_rig_in_python_is_known_by_what_it_holds() -> None:
+    rig = gh.load("planetary")
+    known = identity(Request(rig))
+    assert known.startswith("planetary ") and known == identity(Request(gh.load("planetary")))
+    assert known != identity(Request(rig.with_({"cooling.A": "1 m2"})))
+    assert identity(Request("planetary")) == identity(Request(Path("planetary")))

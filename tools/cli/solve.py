@@ -42,6 +42,7 @@ def simulate(
     duty: Path,
     out: Path,
     set_: list[str] | None = None,
+    every: str | None = None,
     plot: Path | None = None,
     json: str | None = None,
 ) -> None:
@@ -49,7 +50,7 @@ def simulate(
     fitting(out, "a table")
     console.writable(out)
     console.plottable(plot)
-    run = gh.simulate(rig, duty, set_ or [])
+    run = gh.simulate(rig, duty, set_ or [], every=every)
     print_run(run, out, plot, json)
 
 

@@ -14,7 +14,7 @@ from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec
 from ...scenarios.film_map import find_map, names_map
-from ...scenarios.given import Settings, assignments_of, listed
+from ...scenarios.given import Settings, assignments_of
 from ...scenarios.housing import oil_problems
 from ...scenarios.scenario import DRIVES, Scenario, check_drives, deduce_drive, parse_assignments
 from ...scenarios.write import SET
@@ -170,7 +170,7 @@ def _list_filled_sources(scenario: Scenario, assignments: Sequence[str]) -> dict
 
 def names_set(assignments: Settings) -> set[str]:
     """The names of what is set."""
-    return {_name(text) for text in listed(assignments)}
+    return {_name(text) for text in assignments_of(assignments, dict)}
 
 
 def _name(assignment: str) -> str:

@@ -13,16 +13,19 @@ import casadi as ca
 import numpy as np
 
 from ...fmu.batch import Batch
+from ...fmu.variables import GIVEN, ROOM, START, STEADY, start_choice
 from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import ScenarioError, suggestion
+from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.run.point import Point
 from ...model.run.schedule import Schedule
-from ...model.run.simulate import Through, simulate as integrate
+from ...model.run.simulate import OUTPUT_STEP, Through, simulate as integrate
+from ...model.run.steady import steady
 from ...model.units import SHOWN, from_si, in_unit, show_unit
 from ...scenarios.duty import duty_names, read_duty
-from ...scenarios.given import RigLike, Settings, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.columns import titled
+from ..show.console import note
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from .settings import adjust, find_unchecked, flat_of, refuse_given
@@ -34,6 +37,14 @@ if TYPE_CHECKING:
 
 #: Rows of a duty beyond which it runs through compiled code: to compile takes as long as so many restarts of IDAS.
 LONG = 5_000
+#: Rows of a result above which it has more time between them where nothing is asked for.
+MOST = 20_000
+#: Times between rows to choose from [s].
+STEPS = (
+    OUTPUT_STEP,
+    *(60.0 * n for n in (2, 5, 10, 15, 30)),
+    *(3600.0 * n for n in (1, 2, 3, 6, 12, 24, 48, 120, 240)),
+)
 #: Tolerance of the compiled code, with which it is 5e-6 K from IDAS (planetary rig, load and speed by the minute).
 TOLERANCE = 1e-6
 
@@ -185,16 +196,19 @@ def duty_file(duty: Duty) -> Iterator[Path]:
         yield path
 
 
-def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
+def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None) -> TimeSeries:
     """Temperatures and losses over a duty; temperatures that are not set start at the room's.
 
     Args:
         rig: name, file or rig
         duty: CSV file with time and inputs, units in the header, or a DataFrame with the same column names
-        set: values by name: texts with units, quantities of pint, or numbers in SI
+        set: values by name: texts with units, quantities of pint, or numbers in SI; "start": "steady" or "room" says
+            how the run begins, as in an FMU
+        every: time between two rows, such as "10 min"; 1 min if None, more where the duty has above 20,000 of them
 
     Raises:
-        GearheatError: all that is wrong with the rig, the duty or what is set; the run fails
+        GearheatError: all that is wrong with the rig, the duty or what is set; the run fails; its rows take more memory
+            than there is
 
     Example:
         >>> import gearheat as gh
@@ -202,12 +216,15 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
         >>> run.plot("oil.T", "wall.T")  # doctest: +SKIP
     """
     with duty_file(duty) as path:
-        refuse_given(set, named := duty_names(path), path.name)
-        scenario = adjust(scenario_of(rig), set, named=named)
+        usual = scenario_of(rig)
+        how, assignments = split_start(assignments_of(set, usual.settable))
+        refuse_given(assignments, named := duty_names(path), path.name)
+        scenario = adjust(usual, assignments, named=named)
         flat = flat_of(scenario)
         schedule = read_duty(path, flat)
     through = compiled(flat, schedule) if len(schedule.time) > LONG else None
-    result = integrate(flat, schedule, start=first_temperatures(scenario, flat, schedule), through=through)
+    begin, step = first_states(scenario, flat, schedule, how), output_step(schedule, every)
+    result = integrate(flat, schedule, start=begin, through=through, every=step)
     before = {"schema": "gearheat.simulate/1", "rig": scenario.name, "out": None, "plot": None}
     into = result.columns.get(f"{scenario.drives}.P", np.zeros(0))
     behind = {
@@ -222,6 +239,22 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
     end = SteadyState(scenario, flat, last, backward=False)
     said = [*(["at the end: " + ", ".join(end.flows)] if end.flows else []), *end.headlines]
     return TimeSeries(name, result.index, result.columns, result.units, (before, behind), said)
+
+
+def output_step(schedule: Schedule, every: Any) -> float:
+    """Time between two rows [s]: as asked, else the shortest usual one that does not give too many rows, told.
+
+    Args:
+        schedule: the duty
+        every: text with a unit, number in SI, or None
+    """
+    if every is not None:
+        return in_seconds(every, "--every")
+    length = schedule.stop - schedule.start
+    step = next((step for step in STEPS if length / step <= MOST), length / MOST)
+    if step > OUTPUT_STEP:
+        note(f"a row every {step / 60:g} min, as the duty lasts {length / 3600:.4g} h; --every says otherwise")
+    return step
 
 
 def compiled(flat: FlatModel, schedule: Schedule) -> Through:
@@ -240,6 +273,31 @@ def compiled(flat: FlatModel, schedule: Schedule) -> Through:
         return rows.x[0].T, evaluated, np.array([rows.supplied[0], rows.throughput[0]])
 
     return through
+
+
+def split_start(assignments: Sequence[str]) -> tuple[str, list[str]]:
+    """How a run begins, and the other assignments.
+
+    Raises:
+        ScenarioError: there is no such beginning
+    """
+    told = [text.partition("=")[2].strip() for text in assignments if text.partition("=")[0].strip() == START]
+    items = [item.name for item in start_choice("room").items]
+    Problems(
+        f'{START} = "{how}" is not known. Choose one of: {", ".join(items)}.' for how in {*told} - {*items}
+    ).check()
+    return (told or [GIVEN])[-1], [text for text in assignments if text.partition("=")[0].strip() != START]
+
+
+def first_states(scenario: Scenario, flat: FlatModel, schedule: Schedule, how: str) -> dict[str, float]:
+    """States that a run begins with: as set, all at the room's temperature, or at rest with the first inputs."""
+    first = first_temperatures(scenario, flat, schedule)
+    if how == ROOM and first:
+        return dict.fromkeys(flat.bodies, next(iter(first.values())))
+    if how != STEADY:
+        return first
+    found = steady(flat, {name: float(values[0]) for name, values in schedule.values.items()}, guess=first)
+    return {q.name: float(found[q.name][0]) for q in flat.states}
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:

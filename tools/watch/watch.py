@@ -13,9 +13,11 @@ import numpy as np
 
 from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
+from ...scenarios.given import scenario_of
 from ...scenarios.measured.logs import parse_number
 from ...scenarios.measured.table import Sensor
 from ...scenarios.measured.times import NUMBERS, find_times, parse_time
+from ...scenarios.write import rig_text
 from ..diagnose.request import Request
 from .sources import Row, Source
 from .store import Cells, Machine, Store
@@ -184,9 +186,14 @@ def stamp(time: float, kind: str) -> str | float:
 
 
 def identity(request: Request) -> str:
-    """What must not change while a state is gone on with: the files of a request, by what they hold."""
+    """What must not change while a state is gone on with: rig and files of a request, by what they hold."""
     digest = hashlib.sha256()
-    for path in (Path(str(request.rig)), *(path for _, path in request.files())):
+    if isinstance(rig := request.rig, str | Path):
+        name, own = str(rig), [Path(rig)]
+    else:
+        name, own = scenario_of(rig).name, []
+        digest.update(rig_text(scenario_of(rig)).encode())
+    for path in (*own, *(path for _, path in request.files())):
         if path.is_file():
             digest.update(path.read_bytes())
-    return f"{request.rig} {digest.hexdigest()[:16]}"
+    return f"{name} {digest.hexdigest()[:16]}"

@@ -1,0 +1,50 @@
+"""What Python may give: values, times, ranges and tables in any sensible form, and words for all others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gearheat as gh
+import pytest
+from gearheat.model.run import simulate as transient
+
+HEAD = "time [h],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"
+
+
+@pytest.fixture(scope="module")
+def rig() -> gh.Rig:
+    return gh.load("planetary")
+
+
+@pytest.fixture(scope="module")
+def day(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    (path := tmp_path_factory.mktemp("duty") / "day.csv").write_text(f"{HEAD}0,150,2000,20\n24,150,2000,22\n")
+    return path
+
+
+@pytest.mark.parametrize(("every", "rows"), [(None, 1441), ("10 min", 145), (3600, 25)])
+def test_how_often_a_run_has_a_row(rig: gh.Rig, day: Path, every: object, rows: int) -> None:
+    assert len(gh.simulate(rig, day, every=every).time) == rows
+
+
+def test_a_year_has_fewer_rows_and_says_so(
+    rig: gh.Rig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (path := tmp_path / "year.csv").write_text(f"{HEAD}0,150,2000,20\n8760,150,2000,22\n")
+    assert len(gh.simulate(rig, path).time) == 17521
+    assert "a row every 30 min" in capsys.readouterr().err
+    monkeypatch.setattr(transient, "memory", lambda: 1e9)
+    with pytest.raises(gh.GearheatError, match=r"5\.26e\+05 rows, which take about 4\.\d+ GB.*there are 1 GB"):
+        gh.simulate(rig, path, every="1 min")
+    with pytest.raises(gh.GearheatError, match="above 0"):
+        gh.simulate(rig, path, every=0)
+
+
+def test_how_a_run_begins(rig: gh.Rig, day: Path) -> None:
+    rest = gh.steady(rig, {"carrier.w": "150 rpm", "carrier.tau": "2000 N.m", "room.T": "20 degC"})
+    run = gh.simulate(rig, day, {"start": "steady"}, every=3600)
+    assert run["oil.T"][0] == pytest.approx(rest["oil.T"], abs=1e-6)
+    cold = gh.simulate(rig, day, {"start": "room", "oil.T": "60 degC"}, every=3600)
+    assert cold["oil.T"][0] == 293.15
+    with pytest.raises(gh.GearheatError, match=r'start = "warm".*given, room, steady'):
+        gh.simulate(rig, day, {"start": "warm"})
