@@ -208,15 +208,28 @@ class Scenario:
         Raises:
             ScenarioError: unknown name, with suggestions
         """
-        found = entry_values(self._entry(part, name), settable(self.types[part]))
-        known, taken = self._known(part), settable(self.types[part]).keys()
-        own = {key for old in self.entries.get(part, {}).values() if old in known for key in known[old].values}
-        if lacking := sorted(own & taken - found.keys()):
+        found = entry_values(self.entry(part, name), settable(self.types[part]))
+        if lacking := sorted(self._wanted(part) - found.keys()):
+            before = ", ".join(self.entries.get(part, {}).values()) or "what it holds now"
             raise ScenarioError(
-                f"{part} = {name}: it lacks {', '.join(lacking)}, which {', '.join(self.entries[part].values())} gives."
-                " Choose one of the same kind."
+                f"{part} = {name}: it lacks {', '.join(lacking)}, which {before} gives. Choose one of the same kind."
             )
         return {f"{part}.{key}": value for key, value in found.items()}
+
+    def following(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Values by path in SI, and with them those of the rig that follow from them.
+
+        Args:
+            values: path -> value in SI
+        """
+        references = {path: ref for path, ref in self.references.items() if path not in values}
+        spec = followed(self.spec.with_values(values), references, values, self.settable()) if references else self.spec
+        found = dict(values)
+        for path in references:
+            part, _, key = path.rpartition(".")
+            if (new := spec.part(part).values[key]) != self.spec.part(part).values[key]:
+                found[path] = new
+        return found
 
     def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:
         """A source for each value that an entry gives a part, with a remark where the value is unchecked.
@@ -229,35 +242,45 @@ class Scenario:
         Raises:
             ScenarioError: unknown name, with suggestions
         """
-        found = self._entry(part, name)
+        found = self.entry(part, name)
         return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
 
     def alternatives(self, part: str) -> tuple[str, ...]:
-        """Names of the catalogue entries that give a part all that its own entries give it.
+        """Names of the catalogue entries that may take the place of what a part is filled with.
 
         Args:
-            part: name of a part that is filled from a catalogue
+            part: name of a part that is filled from a catalogue, or has values of its own in the place of an entry's
 
         Raises:
             ScenarioError: there is no such part, or no catalogue fits it
         """
-        known, taken = self._known(part), settable(self.types[part]).keys()
-        own = [known[name].values.keys() & taken for name in self.entries.get(part, {}).values() if name in known]
-        found = tuple(name for name, e in known.items() if all(e.values.keys() >= keys for keys in own))
+        wanted = self._wanted(part)
+        found = tuple(name for name, e in self._known(part).items() if e.values.keys() >= wanted)
         if not found:
             raise ScenarioError(f"{self.name}: no catalogue has values for {part}.")
         return found
 
-    def _known(self, part: str) -> dict[str, Entry]:
-        """The catalogue entries that have values for a part."""
-        taken = settable(self.spec.types[self.spec.part(part).type]).keys()
-        kinds = self.entries.get(part) or FILES
-        return {name: e for kind in kinds for name, e in catalogue(kind).items() if e.values.keys() & taken}
+    def filled_with(self, part: str) -> tuple[str, ...]:
+        """The kinds of catalogue that a part is filled from, or may be filled from as it is."""
+        return tuple(dict.fromkeys(entry.kind for entry in self._known(part).values()))
 
-    def _entry(self, part: str, name: str) -> Entry:
+    def _known(self, part: str) -> dict[str, Entry]:
+        """The catalogue entries for a part: of the kinds it was filled from; else those of which it takes the most."""
+        taken, own = settable(self.spec.types[self.spec.part(part).type]).keys(), self.entries.get(part)
+        found = {name: e for kind in own or FILES for name, e in catalogue(kind).items() if e.values.keys() & taken}
+        return found if own else {n: e for n, e in found.items() if 2 * len(e.values.keys() & taken) > len(e.values)}
+
+    def _wanted(self, part: str) -> set[str]:
+        """Values that an entry must have for a part: those of its own entries; else all that it has and others give."""
+        known, own = self._known(part), self.entries.get(part, {}).values()
+        given = [e.values.keys() for name, e in known.items() if name in own or not own]
+        return {*self.spec.part(part).values} & {key for keys in given for key in keys}
+
+    def entry(self, part: str, name: str) -> Entry:
+        """The entry of a name of the catalogues that fit a part. Raises ScenarioError for an unknown one."""
         known = self._known(part)
         if name not in known:
-            kinds = " or ".join(self.entries.get(part) or FILES)
+            kinds = " or ".join(self.entries.get(part) or self.filled_with(part)) or "entry of a catalogue"
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
             raise ScenarioError(f'{part} = {name}: unknown {kinds} "{name}".{close}')
         return known[name]

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from ..model.core.component import Component
 from ..model.core.declare import Choice, list_declared
 from ..model.core.flat import Quantity
+from ..model.errors import ScenarioError
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
+from .entries import Entry, entry
+from .references import look_up
 from .scenario import DRIVES, Instrument, Scenario
-from .values import UNCERTAINTIES, settable
+from .values import UNCERTAINTIES, entry_values, settable
 
 #: Choices that follow from [drive].
 _DRIVEN = ("given", "dynamic", "drives")
@@ -41,10 +45,12 @@ def _lines(scenario: Scenario) -> Iterator[str]:
     yield from _table("operating_point", point | drives, sources=sources) or ["", "[operating_point]"]
     for part in scenario.spec.parts:
         cls = scenario.spec.types[part.type]
-        values = _part_values(part, cls)
+        entries = _entries(scenario, part, cls)
+        values = {k: v for k, v in _part_values(scenario, part, cls).items() if k not in _told(scenario, part, entries)}
         sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
         uncertainties = _uncertainties(scenario, part, cls)
-        yield from _table(f"part.{_key(part.name)}", {"type": part.type} | values, sources=sources, more=uncertainties)
+        whole = {"type": part.type} | {kind: found.name for kind, found in entries.items()} | values
+        yield from _table(f"part.{_key(part.name)}", whole, sources=sources, more=uncertainties)
     yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(_nets(scenario.spec.connections), 1)})
     for instrument in scenario.instruments:
         yield from _table(f"sensors.{_key(instrument.name)}", _sensor(instrument, scenario.readable()))
@@ -83,10 +89,40 @@ def _sensor(instrument: Instrument, units: Mapping[str, Quantity]) -> dict[str, 
     return found | {key: str(_value(sd, unit)) for key, sd in spreads.items() if sd is not None}
 
 
-def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:
-    """Values with units and choices of a part."""
+def _entries(scenario: Scenario, part: PartSpec, cls: type[Component]) -> dict[str, Entry]:
+    """Entries that a part is filled from, by kind, of those that give it nothing it does not have."""
+    found = {kind: entry(kind, name) for kind, name in scenario.entries.get(part.name, {}).items()}
+    return {kind: e for kind, e in found.items() if e.values.keys() & settable(cls).keys() <= part.values.keys()}
+
+
+def _told(scenario: Scenario, part: PartSpec, entries: Mapping[str, Entry]) -> set[str]:
+    """The values of a part that its entries tell, value and source."""
+    cls = scenario.types[part.name]
+    told = {
+        k: (v, e.told(k, e.sources[k])) for e in entries.values() for k, v in entry_values(e, settable(cls)).items()
+    }
+    return {k for k, known in told.items() if known == (part.values[k], _source(scenario, f"{part.name}.{k}"))}
+
+
+def _reference(scenario: Scenario, path: str, value: Any, unit: str) -> str | None:
+    """What a value follows from, where it still does."""
+    ref = scenario.references.get(path)
+    if ref is None or (name := ref.partition(".")[0]) not in scenario.types:
+        return None
+    with suppress(ScenarioError):
+        if look_up(path, ref, unit, scenario.types, scenario.spec.part(name).values) == value:
+            return ref
+    return None
+
+
+def _part_values(scenario: Scenario, part: PartSpec, cls: type[Component]) -> dict[str, Any]:
+    """Values with units, what they follow from, and choices of a part."""
     declarations, choices = settable(cls), list_declared(cls, Choice)
-    values = {k: _value(v, declarations[k].unit) for k, v in part.values.items() if k in declarations}
+    values = {
+        k: _reference(scenario, f"{part.name}.{k}", v, declarations[k].unit) or _value(v, declarations[k].unit)
+        for k, v in part.values.items()
+        if k in declarations
+    }
     chosen = {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
     return values | {k: str(v) if isinstance(v, FilmMap) else v for k, v in chosen.items()}
 

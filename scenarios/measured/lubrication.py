@@ -58,12 +58,12 @@ def oil_values(scenario: Scenario, name: str, card: Card) -> dict[str, float]:
     if not bath or not (name or card.oil.name or card.oil.nu40):
         return {}
     if name in known:
-        return scenario.entry_values(bath, name)
+        return scenario.following(scenario.entry_values(bath, name))
     if card.oil.nu40 is None and card.oil.name:
-        return scenario.entry_values(bath, card.oil.name)
+        return scenario.following(scenario.entry_values(bath, card.oil.name))
     keys = [path.rpartition(".")[2] for path in scenario.entry_values(bath, next(iter(known)))]
     own = {f"{bath}.{key}": float(scenario.spec.part(bath).values[key]) for key in keys}
-    return own | {f"{bath}.{key}": value for key, value in card_oil(card.oil).items()}
+    return scenario.following(own | {f"{bath}.{key}": value for key, value in card_oil(card.oil).items()})
 
 
 def oil_problems(name: str, places: Mapping[str, str], card: Card) -> list[str]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import gearheat as gh
 import pytest
 from gearheat.model.run import simulate as transient
+from gearheat.tools.export.fmu import choices_of
 
 HEAD = "time [h],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"
 
@@ -48,3 +50,27 @@ def test_how_a_run_begins(rig: gh.Rig, day: Path) -> None:
     assert cold["oil.T"][0] == 293.15
     with pytest.raises(gh.GearheatError, match=r'start = "warm".*given, room, steady'):
         gh.simulate(rig, day, {"start": "warm"})
+
+
+def test_what_a_rig_is_filled_with_is_kept_and_followed(tmp_path: Path) -> None:
+    made = gh.new("conveyor", stages="helical", ratio=4.0, power="30 kW", speed="1480 rpm", oil="ISO VG 320 mineral")
+    saved = gh.load(made.save(tmp_path / "saved.toml"))
+    assert saved.scenario.entries == made.scenario.entries and saved.scenario.references == made.scenario.references
+    other = "ISO VG 320 PAG"
+    again = gh.load(saved.with_({"oil": other}).save(tmp_path / "again.toml"))
+    assert again["oil.alpha_T"] == again["oil_gears_1.alpha_T"] == -0.00073 != saved["oil_gears_1.alpha_T"]
+    assert again.scenario.entries["oil"] == {"oil": other}
+    (oils,) = (c for c in choices_of(saved.scenario) if c.name == "oil.oil")
+    (item,) = (i for i in oils.items if i.name == other)
+    assert item.values["oil_gears_1.alpha_T"] == -0.00073
+
+
+def test_a_bath_is_filled_with_oils_alone(tmp_path: Path) -> None:
+    made = gh.new("conveyor", stages="helical", ratio=4.0, power="30 kW", speed="1480 rpm").scenario
+    plain = replace(made, entries={}, references={})  # as a file has it that was written value by value
+    for scenario in (made, plain):
+        assert scenario.filled_with("oil") == ("oil",) and not scenario.filled_with("wall")[1:]
+        assert "MINR" in scenario.alternatives("oil") and "bearing grease" not in scenario.alternatives("oil")
+        assert [c.name for c in choices_of(scenario)] == ["start", "oil.oil"]
+        with pytest.raises(gh.GearheatError, match='unknown oil "steel"'):
+            gh.steady(gh.Rig(scenario), {"oil": "steel"})

@@ -237,7 +237,7 @@ def choices_of(scenario: Scenario, hidden: Collection[str] = ()) -> tuple[Choice
         hidden: parameters that are constants of the model; an oil's cannot be chosen
     """
     room = scenario.room if scenario.room in scenario.driven_paths() else None
-    filled = [part for part, kinds in scenario.entries.items() if _OIL in kinds]
+    filled = [part.name for part in scenario.spec.parts if _OIL in scenario.filled_with(part.name)]
     oils = [_oil(scenario, part) for part in filled]
     free = [oil for oil in oils if not any(item.values.keys() & hidden for item in oil.items)]
     return (start_choice(room), *free)
@@ -246,7 +246,10 @@ def choices_of(scenario: Scenario, hidden: Collection[str] = ()) -> tuple[Choice
 def _oil(scenario: Scenario, part: str) -> Choice:
     known = catalogue(_OIL)
     own = Item("as exported", "the start values of the parameters")
-    others = (Item(name, known[name].doc, scenario.entry_values(part, name)) for name in scenario.alternatives(part))
+    others = (
+        Item(name, known[name].doc, scenario.following(scenario.entry_values(part, name)))
+        for name in scenario.alternatives(part)
+    )
     return Choice(f"{part}.{_OIL}", "the oil filled in", (own, *others))
 
 

@@ -40,7 +40,7 @@ class _Case:
 
     def filled(self, part: str, name: str) -> _Case | None:
         """The same with a part filled from another entry, where that changes no more than parameters of the model."""
-        own = self.setting.entry_values(part, name)
+        own = self.setting.following(self.setting.entry_values(part, name))
         if any(self.flat.index.get(path, ("", 0))[0] != "parameter" for path in own):
             return None
         return replace(self, setting=adjust(self.setting, [f"{part}={name}"], named=self.free), own=own)

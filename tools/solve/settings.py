@@ -63,7 +63,8 @@ def adjust(
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
     sources = {**set_up.value_sources, **_list_filled_sources(scenario, assignments)}
-    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    entries = filled_from(scenario, assignments)
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources, entries=entries)
     Problems(oil_problems(set_up.spec)).check()
     return set_up.with_values(_derive_values(set_up.spec, named), SET)
 
@@ -166,6 +167,14 @@ def _list_filled_sources(scenario: Scenario, assignments: Sequence[str]) -> dict
         if (part := _name(text)) in parts:
             found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
     return {path: source for path, source in found.items() if path not in single}
+
+
+def filled_from(scenario: Scenario, assignments: Sequence[str]) -> dict[str, Mapping[str, str]]:
+    """Part -> kind of catalogue -> name of the entry it is filled from, with those that are set."""
+    split = [(part.strip(), name.strip()) for part, _, name in (text.partition("=") for text in assignments)]
+    set_ = {part: scenario.entry(part, name) for part, name in split if part in scenario.types}
+    told = {part: {**scenario.entries.get(part, {}), found.kind: found.name} for part, found in set_.items()}
+    return {**scenario.entries, **told}
 
 
 def names_set(assignments: Settings) -> set[str]:
