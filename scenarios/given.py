@@ -90,6 +90,25 @@ def in_seconds(value: Any, name: str) -> float:
     return to_si(spell(value, TIME, name), "s", name=name)
 
 
+def range_text(given: Any, quantity: Quantity | None, name: str) -> str:
+    """A range as the command line has it, "10 degC..35 degC".
+
+    Args:
+        given: such a text, or its two ends as texts with units, numbers in SI or quantities of pint
+        quantity: what it is of
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it is no range
+    """
+    if isinstance(given, str):
+        return given
+    ends = list(given) if isinstance(given, Iterable) else [given]
+    if len(ends) != 2:
+        raise ScenarioError(f"{name}: {reprlib.repr(given)} is no range. Give its lowest and highest value.")
+    return "..".join(spell(end, quantity, name) for end in ends)
+
+
 def listed(names: Any, name: str = "names") -> list[str]:
     """Texts as a list; one text is a list of one, None is none.
 

@@ -277,7 +277,15 @@ class Scenario:
         return {*self.spec.part(part).values} & {key for keys in given for key in keys}
 
     def entry(self, part: str, name: str) -> Entry:
-        """The entry of a name of the catalogues that fit a part. Raises ScenarioError for an unknown one."""
+        """An entry of the catalogues that fit a part.
+
+        Args:
+            part: name of a part
+            name: of the entry
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
         known = self._known(part)
         if name not in known:
             kinds = " or ".join(self.entries.get(part) or self.filled_with(part)) or "entry of a catalogue"

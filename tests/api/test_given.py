@@ -74,3 +74,37 @@ def test_a_bath_is_filled_with_oils_alone(tmp_path: Path) -> None:
         assert [c.name for c in choices_of(scenario)] == ["start", "oil.oil"]
         with pytest.raises(gh.GearheatError, match='unknown oil "steel"'):
             gh.steady(gh.Rig(scenario), {"oil": "steel"})
+
+
+@pytest.mark.parametrize(
+    ("vary", "options", "rows"),
+    [
+        ({"carrier.tau": [500, 900.0, 2700]}, {}, [[500], [900], [2700]]),
+        (
+            {"carrier.tau": np.array([900, 500]), "room.T": (280, 300, 2)},
+            {},
+            [[900, 280], [900, 300], [500, 280], [500, 300]],
+        ),
+        ({"carrier.tau": ["0.5 kN.m"], "room.T": ("280 K", "300 K")}, {"grid": 2}, [[500, 280], [500, 300]]),
+        (["carrier.tau=500,900 N.m"], {}, [[500], [900]]),
+        ({"carrier.tau": "500..900 N.m"}, {"grid": (2,)}, [[500], [900]]),
+    ],
+)
+def test_what_a_sweep_varies(rig: gh.Rig, vary: object, options: dict, rows: list) -> None:
+    found = gh.sweep(rig, vary, output="oil.T", **options)
+    assert found.plan.values.tolist() == rows and list(found.summary.as_dict(None)["outputs"]) == ["oil.T"]
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ({"carrier.tau": [500, 500]}, "there twice"),
+        ({"carrier.tau": (500,)}, "is no range"),
+        ({"carrier.tau": [None]}, "is no value"),
+        ({"carrier.tau": []}, "is no range"),
+        ({"carrier.tau": (500, 900)}, "--grid"),
+    ],
+)
+def test_what_no_sweep_varies(rig: gh.Rig, vary: object, words: str) -> None:
+    with pytest.raises(gh.GearheatError, match=words):
+        gh.sweep(rig, vary, output="oil.T")

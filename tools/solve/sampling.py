@@ -1,6 +1,7 @@
 """What a sweep varies, as a user writes it, and the values of its rows: a grid, a Latin hypercube, or chance.
 
 carrier.tau=500..2700 N.m       uniform between two values
+carrier.tau=500,900,2700 N.m    these values
 cooling.A~normal(0.8, 0.05) m2  normal with mean and standard deviation
 uncertainty                     all that is uncertain: by its file, and groups of parameters by what parts are
 """
@@ -37,12 +38,13 @@ UNCERTAINTY = "uncertainty"
 
 @dataclass(frozen=True)
 class Written:
-    """One quantity that is varied, as written: a name, two numbers and a unit."""
+    """One quantity that is varied, as written: a name, two numbers and a unit, or all values."""
 
     name: str
-    kind: Literal["uniform", "normal"]
+    kind: Literal["uniform", "normal", "values"]
     first: str
     second: str
+    values: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,15 +52,19 @@ class Axis:
     """One quantity that is varied (SI): uniform from `first` to `second`, or normal with that mean and deviation.
 
     Of a lognormal one they are the median and, in its unit, what one standard deviation of the logarithm changes it by.
+    Of given values they are the least and the largest.
     """
 
     name: str
-    kind: Literal["uniform", "normal", "lognormal"]
+    kind: Literal["uniform", "normal", "lognormal", "values"]
     first: float
     second: float
+    values: tuple[float, ...] = ()
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Values below which the shares (0 ... 1) of all values lie."""
+        """Values below which the shares (0 ... 1) of all values lie; of given values, in their order."""
+        if self.kind == "values":
+            return np.array(self.values)[np.minimum(share * len(self.values), len(self.values) - 1).astype(int)]
         if self.kind == "uniform":
             return np.asarray(self.first + share * (self.second - self.first))
         from scipy.special import ndtri
@@ -86,6 +92,12 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
             unit = re.sub(_BARE, "", high, count=1).strip()
             low = f"{low} {unit}".strip() if _BARE.fullmatch(low) else low
             found.append(Written(name, "uniform", low, high))
+        elif lists(text):
+            name, _, written = (part.strip() for part in text.partition("="))
+            values = [part.strip() for part in written.split(",") if part.strip()]
+            unit = re.sub(_BARE, "", values[-1], count=1).strip()
+            values = [f"{value} {unit}".strip() if _BARE.fullmatch(value) else value for value in values]
+            found.append(Written(name, "values", values[0], values[-1], tuple(values)))
         else:
             problems.append(
                 f'--vary "{text}" is no range. Write NAME=LOW..HIGH with a unit, for example "room.T=10..35 degC",\n'
@@ -97,6 +109,14 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
         problems.append('--vary is missing. Say what is varied, for example --vary "room.T=10..35 degC".')
     problems.check()
     return tuple(found)
+
+
+def lists(text: str) -> bool:
+    """Whether a text gives values one by one: NAME=VALUE,VALUE."""
+    name, equals, values = text.partition("=")
+    return bool(
+        name.strip() and equals and "," in values and values.strip(" ,") and ".." not in values and "~" not in name
+    )
 
 
 def axes(written: Sequence[Written], known: Mapping[str, Quantity]) -> tuple[Axis, ...]:
@@ -120,6 +140,13 @@ def axes(written: Sequence[Written], known: Mapping[str, Quantity]) -> tuple[Axi
 
 def _axis(w: Written, quantity: Quantity) -> Axis:
     where = f"--vary {w.name}"
+    if w.kind == "values":
+        for text in w.values:
+            in_range("--vary ", text, quantity)
+        values = tuple(to_si(text, quantity.unit, name=where) for text in w.values)
+        if len(set(values)) < len(values):
+            raise ScenarioError(f"{where}: a value is there twice. Give each once.")
+        return Axis(w.name, w.kind, min(values), max(values), values)
     first = to_si(w.first, quantity.unit, name=where)
     second = to_si(w.second, quantity.unit, name=where)
     if w.kind == "normal":
@@ -160,17 +187,22 @@ def draw_sample(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.n
 def lay_grid(axes: Sequence[Axis], text: str) -> np.ndarray:
     """Values of a grid such as "20x10" (rows, axes), the last axis running fastest.
 
-    A uniform axis goes from end to end, a normal one through the middles of slices of equal probability.
+    A uniform axis goes from end to end, a normal one through the middles of slices of equal probability; given values
+    are taken as they are, and need no number.
 
     Raises:
         ScenarioError: no grid, or not one number per axis
     """
-    counts = [int(n) for n in re.split(r"\s*[xX*]\s*", text.strip()) if n.isdecimal()]
-    if len(counts) != len(re.split(r"[xX*]", text)) or min(counts, default=0) < 1:
+    written = re.split(r"\s*[xX*]\s*", text.strip()) if text else []
+    told = [int(n) for n in written if n.isdecimal()]
+    if len(told) != len(written) or min(told, default=1) < 1:
         raise ScenarioError(f'--grid "{text}" is no grid. Write whole numbers above 0, for example 20x10.')
-    if len(counts) != len(axes):
-        names = ", ".join(axis.name for axis in axes)
-        raise ScenarioError(f"--grid {text}: {len(counts)} numbers for {len(axes)} varied ({names}). Give one each.")
+    ranges = [axis.name for axis in axes if axis.kind != "values"]
+    if len(told) != len(ranges):
+        names = ", ".join(ranges) or "none: their values are given"
+        raise ScenarioError(f"--grid {text}: {len(told)} numbers for {len(ranges)} ranges ({names}). Give one each.")
+    left = iter(told)
+    counts = [len(axis.values) or next(left) for axis in axes]
     _check(int(np.prod([float(n) for n in counts])), "--grid")
     lines = [
         axis.at(np.linspace(0.0, 1.0, n) if axis.kind == "uniform" and n > 1 else (np.arange(n) + 0.5) / n)
@@ -186,6 +218,9 @@ def _check(rows: int, option: str) -> None:
 
 def describe_axis(axis: Axis, quantity: Quantity) -> dict[str, object]:
     """An axis for a summary, in the unit shown to a person."""
+    if axis.kind == "values":
+        shown = [float(from_si(value, quantity.unit)) for value in axis.values]
+        return {"kind": axis.kind, "values": shown, "unit": show_unit(quantity.unit)}
     first = from_si(axis.first, quantity.unit)
     second = from_si(axis.second, quantity.unit)
     if axis.kind != "uniform":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 
 from ...fmu.batch import Status
-from ...model.errors import ScenarioError, SolveError
+from ...model.core.flat import Quantity
+from ...model.errors import Problems, SolveError
 from ...model.files import flows
 from ...model.units import from_si, show_unit
-from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of, spell
+from ...scenarios.duty import TIME
+from ...scenarios.given import RigLike, Settings, assignments_of, listed, pairs_of, range_text, scenario_of, spell
 from ..show.console import counting, note
 from ..show.display import Display, optional
 from ..show.picture import Picture
@@ -110,19 +112,19 @@ class Sweep(Display):
 
 def sweep(
     rig: RigLike,
-    vary: Mapping[str, Sequence[Any]] | str | Sequence[str],
+    vary: Mapping[str, Any] | str | Sequence[str],
     *,
     out: str | Path | None = None,
     sample: int | None = None,
-    grid: str | None = None,
+    grid: str | int | Sequence[int] | None = None,
     method: str = "lhs",
     seed: int = 0,
     set: Settings = (),
-    output: Sequence[str] = (),
+    output: str | Sequence[str] = (),
     kind: str = "steady",
     duty: Duty | None = None,
-    duration: str | None = None,
-    every: str | None = None,
+    duration: Any = None,
+    every: Any = None,
     jobs: int = 0,
     scheduler: str | None = None,
     draw: bool = False,
@@ -131,11 +133,12 @@ def sweep(
 
     Args:
         rig: name, file or rig
-        vary: name -> (low, high) or (low, high, points of a grid); or texts such as "carrier.tau=500..2700 N.m",
+        vary: name -> tuple (low, high) or (low, high, points of a grid), or a list of values, each combined with all
+            others; or texts such as "carrier.tau=500..2700 N.m", "carrier.tau=500,900,2700 N.m",
             "cooling.A~normal(0.8, 0.05) m2", and "uncertainty" for every uncertain parameter of the rig
         out: CSV or Parquet file; in memory if None
         sample: number of random rows
-        grid: rows of a grid, a number for each that is varied, such as "20x10"
+        grid: rows of a grid, a number for each range that is varied, such as "20x10" or (20, 10)
         method: how random rows are drawn, "lhs" (Latin hypercube) or "monte-carlo"
         seed: the same seed gives the same sample
         set: values by name: texts with units, quantities of pint, or numbers in SI
@@ -158,33 +161,58 @@ def sweep(
         5
     """
     scenario = scenario_of(rig)
-    texts, counts = listed(vary), []
-    if isinstance(vary, Mapping):
-        known = scenario.settable()
-        if odd := [n for n, ends in vary.items() if len(ends) not in (2, 3)]:
-            raise ScenarioError(f"--vary {odd[0]}: give its lowest and highest value, and of a grid how many points.")
-        texts = [f"{n}={spell(ends[0], known.get(n))}..{spell(ends[1], known.get(n))}" for n, ends in vary.items()]
-        counts = [str(ends[2]) for ends in vary.values() if len(ends) > 2]
+    texts, counts = varied_texts(vary, scenario.settable)
+    grid = "x".join(map(str, grid)) if isinstance(grid, tuple | list) else grid if grid is None else str(grid)
     with duty_file(duty) if duty is not None else nullcontext() as path, tempfile.TemporaryDirectory() as folder:
         request = Request(
             scenario,
             texts,
             None if out is None else Path(out),
             sample,
-            grid or ("x".join(counts) if counts else None),
+            grid or "x".join(counts) or None,
             method,
             seed,
             assignments_of(set, scenario.settable),
-            output,
+            listed(output, "output"),
             kind,
             path,
-            duration,
-            every,
+            None if duration is None else spell(duration, TIME, "--duration"),
+            None if every is None else spell(every, TIME, "--every"),
             jobs,
             scheduler,
             draw,
         )
         return _run(request, Path(folder))
+
+
+def varied_texts(vary: Any, known: Callable[[], Mapping[str, Quantity]]) -> tuple[list[str], list[str]]:
+    """What is varied as texts, and the points of its ranges where they are given.
+
+    Args:
+        vary: by name a tuple (low, high) or (low, high, points), values in another sequence, or a text; or texts
+        known: tells the quantity of each name
+
+    Raises:
+        ScenarioError: what is neither
+    """
+    texts, counts, problems = list[str](), list[str](), Problems()
+    for one in pairs_of(vary):
+        if isinstance(one, str):
+            texts.append(one)
+            continue
+        name, given = one
+        with problems:
+            if isinstance(given, str):
+                texts.append(f"{name}={given}")
+            elif isinstance(given, tuple):
+                texts.append(f"{name}={range_text(given[:2], known().get(name), f'--vary {name}')}")
+                counts += [str(n) for n in given[2:]]
+            else:
+                values = list(given) if isinstance(given, Iterable) else [given]
+                written = ",".join(spell(value, known().get(name), f"--vary {name}") for value in values)
+                texts.append(f"{name}={written}{',' * (len(values) == 1)}")
+    problems.check()
+    return texts, counts
 
 
 def _run(request: Request, folder: Path) -> Sweep:

@@ -157,8 +157,8 @@ def plan_sweep(request: Request) -> Plan:
     found += [f"--vary: {name} is given by the duty. Take one away." for name in names if name in scheduled]
     Problems(filter(None, found)).check()
     axes = sampling.axes(written, {name: flat.quantity(name) for name in names})
-    if request.grid is not None:
-        values = sampling.lay_grid(axes, request.grid)
+    if request.sample is None:
+        values = sampling.lay_grid(axes, request.grid or "")
     else:
         axes, values = _draw_rows(request, scenario, flat, axes)
     job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
@@ -193,7 +193,8 @@ def _problems(request: Request) -> Problems:
         found += [f"{name} does not go with --vary {UNCERTAINTY}. Leave it out." for name, v in options.items() if v]
     if request.drawn and len(request.vary) > MOST_DRAWN:
         found.append(f"--plot draws over one or two quantities; {len(request.vary)} are varied. Vary fewer.")
-    if (request.sample is None) == (request.grid is None):
+    ways = [way for way in (request.sample, request.grid) if way is not None]
+    if len(ways) != 1 and (ways or not all(map(sampling.lists, request.vary))):
         found.append("Give the number of rows either by --sample N or by --grid NxM.")
     if request.method not in ("lhs", "monte-carlo"):
         found.append(f'--method {request.method} is not known. Choose "lhs" or "monte-carlo".')
