@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import gearheat as gh
+import numpy as np
 import pytest
 from gearheat.model.run import simulate as transient
 from gearheat.tools.export.fmu import choices_of

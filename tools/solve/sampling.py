@@ -64,7 +64,8 @@ class Axis:
     def at(self, share: np.ndarray) -> np.ndarray:
         """Values below which the shares (0 ... 1) of all values lie; of given values, in their order."""
         if self.kind == "values":
-            return np.array(self.values)[np.minimum(share * len(self.values), len(self.values) - 1).astype(int)]
+            place = np.minimum(share * len(self.values), len(self.values) - 1).astype(int)
+            return np.asarray(np.array(self.values)[place])
         if self.kind == "uniform":
             return np.asarray(self.first + share * (self.second - self.first))
         from scipy.special import ndtri
