@@ -44,6 +44,10 @@ USUAL = {"W": "kW", "m": "mm"}
 ANGULAR = ("rad/s", "rad", "1", "N.m")
 #: A comma between digits.
 _COMMA = re.compile(r"\d,\d")
+#: A decimal point.
+_POINT = re.compile(r"\.\d")
+#: Commas that may stand between thousands.
+_THOUSANDS = re.compile(r"(?<!\d)[1-9]\d{0,2}(,\d{3})+(?![\d,])")
 #: A digit that is not zero.
 _DIGIT = re.compile(r"[1-9]")
 #: Longest unit [characters].
@@ -148,9 +152,12 @@ def refuse_comma(text: str, name: str) -> None:
         ScenarioError: a comma between digits, with the number as it should be written
     """
     if _COMMA.search(text):
+        ways = [text.replace(",", "")] if _THOUSANDS.search(text) else []
+        ways += [text.replace(",", ".")] if text.count(",") == 1 and not _POINT.search(text) else []
+        written = " or ".join(f'"{way}"' for way in ways)
+        kind = "decimal comma" + ", or one between thousands" * (len(ways) > 1)
         raise ScenarioError(
-            f'{name} = "{text}" has a decimal comma. Write "{text.replace(",", ".")}": a point, and nothing between'
-            " thousands."
+            f'{name} = "{text}" has a {kind}. Write {written or "one number"}: a point, and nothing between thousands.'
         )
 
 

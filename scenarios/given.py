@@ -5,6 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from numbers import Integral
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from ..model.core.flat import Quantity
 from ..model.errors import Problems, ScenarioError
-from ..model.units import example, to_si
+from ..model.units import example, split_quantity, to_si
 from .duty import TIME
 from .load import load
 from .scenario import Scenario
@@ -107,6 +108,48 @@ def range_text(given: Any, quantity: Quantity | None, name: str) -> str:
     if len(ends) != 2:
         raise ScenarioError(f"{name}: {reprlib.repr(given)} is no range. Give its lowest and highest value.")
     return "..".join(spell(end, quantity, name) for end in ends)
+
+
+def range_of(given: Any, quantity: Quantity, name: str) -> tuple[float, float]:
+    """A range in SI.
+
+    Args:
+        given: text "0.4 m2..1.2 m2" or "0.4..1.2 m2", or its two ends
+        quantity: what it is of
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it is none, or its first end is not below its second
+    """
+    first, dots, last = range_text(given, quantity, name).partition("..")
+    if not dots:
+        raise ScenarioError(f'{name} "{given}" is no range. Write LOW..HIGH, both with units.')
+    with suppress(ValueError):
+        first = first if split_quantity(first)[1] else f"{first} {split_quantity(last)[1]}"
+    low, high = (to_si(end.strip(), quantity.unit, name=name) for end in (first, last))
+    if not low < high:
+        raise ScenarioError(f"{name} {first}..{last}: the first end must lie below the second.")
+    return low, high
+
+
+def grid_text(grid: Any, name: str = "--grid") -> str:
+    """A grid as the command line has it, "20x10".
+
+    Args:
+        grid: such a text, or its numbers
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it is none
+    """
+    if isinstance(grid, str):
+        return grid
+    numbers = list(grid) if isinstance(grid, Iterable) else [grid]
+    if not all(isinstance(n, Integral) for n in numbers):
+        raise ScenarioError(
+            f'{name}: {reprlib.repr(grid)} is no grid. Give whole numbers, such as "20x10" or (20, 10).'
+        )
+    return "x".join(map(str, numbers))
 
 
 def listed(names: Any, name: str = "names") -> list[str]:

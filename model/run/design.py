@@ -233,8 +233,8 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     )
     return (
         f"design: {target} reaches {text(low, aim)} ... {text(high, aim)} while {name} goes from {ends}{some}: "
-        f"the target {text(float(search.goal[0]), aim)} is out of reach.\nWiden the bounds or free something else."
-        + _limits(search)
+        f"the target {text(float(search.goal[0]), aim)} is out of reach.\n"
+        "Free something else, or within another range: NAME=LOW..HIGH." + _limits(search)
     )
 
 
@@ -275,5 +275,5 @@ def _no_values(search: Search, reached: Sequence[np.ndarray]) -> str:
         else f"{name} reaches {text(float(a), unit)} ... {text(float(b), unit)}"
         for name, a, b, unit in extremes
     ]
-    advice = "change the targets or the bounds, or free something else."
+    advice = "change the targets, or free something else or within other ranges, NAME=LOW..HIGH."
     return head + f"Over their ranges {', '.join(seen)}: {advice}" + _limits(search)

@@ -39,7 +39,11 @@ class Target:
 
 
 def least_change(
-    flat: FlatModel, free: Sequence[str], targets: Sequence[Target], values: Mapping[str, float]
+    flat: FlatModel,
+    free: Sequence[str],
+    targets: Sequence[Target],
+    values: Mapping[str, float],
+    bounds: Mapping[str, tuple[float, float]] | None = None,
 ) -> Design:
     """The fewest and, of as many, the smallest changes of freed values that meet all targets.
 
@@ -51,6 +55,7 @@ def least_change(
         free: parameters and inputs that may change
         targets: equalities need a freed name each, limits one where they do not hold
         values: parameters and inputs (SI), those of freed names are what they change from
+        bounds: freed name -> lowest and highest value that it may have (SI)
 
     Raises:
         ScenarioError: unknown names, names of the wrong kind, too few of them free
@@ -59,13 +64,21 @@ def least_change(
     equal = {t.name: t.value for t in targets if t.sign == "="}
     limits = [t for t in targets if t.sign != "="]
     if not limits:
-        return design(flat, free, equal, values)
+        return design(flat, free, equal, values, bounds=bounds)
     problems: list[str] = []
+    near: list[Design] = []
     for size in range(len(limits) + 1):
-        found = list(_solve_groups(flat, free, targets, equal, list(combinations(limits, size)), values, problems))
+        groups = list(combinations(limits, size))
+        found: list[Design] = []
+        for one in _solve_groups(flat, free, targets, equal, groups, values, bounds or {}, problems):
+            (found if all(_meets(flat, t, one) for t in targets) else near).append(one)
         if found:
             best, *others = sorted(found, key=lambda d: change(flat, d, values))
             return replace(best, notes=(*best.notes, *(_describe(flat, d) for d in others)))
+    if near := [one for one in near if one.values]:
+        raise SolveError(
+            [_describe_near(flat, targets, min(near, key=lambda d: change(flat, d, values))), *problems][:TOLD]
+        )
     if not problems:
         there = evaluate_unchanged(flat, targets, values)
         missed = ", ".join(_describe_miss(flat, t, there) for t in targets if not _meets(flat, t, there))
@@ -132,19 +145,24 @@ def _solve_groups(
     equal: Mapping[str, float],
     limits: Sequence[Sequence[Target]],
     values: Mapping[str, float],
+    bounds: Mapping[str, tuple[float, float]],
     problems: list[str],
 ) -> Iterator[Design]:
-    """The designs that meet all targets with one of these groups of limits met exactly; what fails is a problem."""
+    """The designs with all equalities and one of these groups of limits met exactly; what fails is a problem."""
     for group in limits:
         aims = {**equal, **{t.name: t.value for t in group}}
         for chosen in combinations(free, len(aims)):
+            own = {name: bounds[name] for name in chosen if name in bounds}
             try:
-                found = design(flat, chosen, aims, values) if aims else evaluate_unchanged(flat, targets, values)
+                found = (
+                    design(flat, chosen, aims, values, bounds=own)
+                    if aims
+                    else evaluate_unchanged(flat, targets, values)
+                )
             except SolveError as error:
                 problems += error.problems if aims else ()
                 continue
-            if all(_meets(flat, t, found) for t in targets):
-                yield found if aims else replace(found, notes=(MET,))
+            yield found if aims else replace(found, notes=(MET,))
 
 
 def _size(flat: FlatModel, target: Target) -> float:
@@ -159,6 +177,16 @@ def _describe(flat: FlatModel, found: Design) -> str:
     """Another way to meet the targets, in words."""
     ways = (f"{name} = {text(value, flat.quantity(name).unit)}" for name, value in found.values.items())
     return f"or with a larger change: {', '.join(ways)}"
+
+
+def _describe_near(flat: FlatModel, targets: Sequence[Target], found: Design) -> str:
+    """What a design that meets some of the targets leaves unmet, in words."""
+    ways = ", ".join(f"{name} = {text(value, flat.quantity(name).unit)}" for name, value in found.values.items())
+    held = ", ".join(
+        f"{t.name} {t.sign} {text(t.value, flat.quantity(t.name).unit)}" for t in targets if _meets(flat, t, found)
+    )
+    missed = ", ".join(_describe_miss(flat, t, found) for t in targets if not _meets(flat, t, found))
+    return f"design: {ways} gives {held}; there {missed}. Free more with --free, or ease that limit."
 
 
 def _describe_miss(flat: FlatModel, target: Target, found: Design) -> str:

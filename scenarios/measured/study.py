@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ...model.errors import DataError
+from ..frames import Table, path_of, rows_told
 from ..given import RigLike, scenario_of
 from ..scenario import Scenario
 from ..write import DIAGNOSED, SET
@@ -74,7 +75,8 @@ class Measured:
         return int(names[test]) if all(name.isdigit() for name in names) else test + 1
 
 
-def read_study(scenario: Scenario, data: str | Path | None = None, card: str | Path | None = None) -> Measured | None:
+@rows_told()
+def read_study(scenario: Scenario, data: Table | None = None, card: str | Path | None = None) -> Measured | None:
     """A rig with the readings in a table, or with its own; None for a rig without any.
 
     Args:
@@ -87,7 +89,7 @@ def read_study(scenario: Scenario, data: str | Path | None = None, card: str | P
     """
     if card is not None and data is None:
         raise DataError(f"--card {card} says how a measured table was taken. Give the table, too, as --data FILE.")
-    path = scenario.data if data is None else Path(data)
+    path = scenario.data if data is None else path_of(data, name="--data")
     if path is None:
         return None
     told = Card() if card is None else read_card(Path(card))

@@ -146,8 +146,8 @@ def test_designs_sweeps_and_maps(rig: gh.Rig, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
-        (lambda rig: gh.sweep(rig, {"room.T": ["0 degC"]}, sample=2), "--vary room.T: give its lowest and highest"),
-        (lambda rig: gh.sweep(rig, {"room.T": [280, 300]}, sample=2, jobs=-1), "--jobs -1 is below zero"),
+        (lambda rig: gh.sweep(rig, {"room.T": ("0 degC",)}, sample=2), "is no range. Give its lowest and highest"),
+        (lambda rig: gh.sweep(rig, {"room.T": (280, 300)}, sample=2, jobs=-1), "--jobs -1 is below zero"),
         (lambda rig: gh.losses(rig, temperature="oil"), '--temperature oil is not known. Choose "measured"'),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import gearheat as gh
 import numpy as np
 import pytest
 from gearheat.model.run import simulate as transient
+from gearheat.scenarios.frames import path_of
 from gearheat.tools.export.fmu import choices_of
 
 HEAD = "time [h],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"
@@ -109,3 +111,85 @@ def test_what_a_sweep_varies(rig: gh.Rig, vary: object, options: dict, rows: lis
 def test_what_no_sweep_varies(rig: gh.Rig, vary: object, words: str) -> None:
     with pytest.raises(gh.GearheatError, match=words):
         gh.sweep(rig, vary, output="oil.T")
+
+
+@pytest.mark.parametrize("table", [None, {"time": 1}, 3])
+def test_what_is_no_table(rig: gh.Rig, table: object) -> None:
+    with pytest.raises(gh.GearheatError, match="is no table"):
+        gh.simulate(rig, table)
+    with pytest.raises(gh.GearheatError, match=r"is no table|no data are given"):
+        gh.diagnose(table, rig)
+
+
+def test_frames_of_pandas_with_times(rig: gh.Rig) -> None:
+    pd = pytest.importorskip("pandas")
+    frame = pd.DataFrame({"carrier.w [rpm]": 150.0, "carrier.tau [N.m]": 2000.0, "room.T [degC]": [20.0, 21.0, 22.0]})
+    moments = pd.date_range("2024-03-01", periods=3, freq="h")
+    wanted = gh.simulate(rig, frame.set_index(pd.Index([0.0, 3600.0, 7200.0], name="time [s]")))["oil.T"]
+    index = [moments, moments - moments[0], moments.tz_localize("UTC"), moments.rename("stamp")]
+    frames = [*(frame.set_index(one) for one in index), frame.assign(time=moments)[["time", *frame.columns]]]
+    for one in frames:
+        np.testing.assert_array_equal(gh.simulate(rig, one)["oil.T"], wanted)
+    with pytest.raises(gh.GearheatError, match=r"Name its index 'time \[s\]'"):
+        gh.simulate(rig, frame.set_index(pd.Index([0.0, 3600.0, 7200.0])))
+    with pytest.raises(gh.GearheatError, match="row 2 of the DataFrame: time goes back"):
+        gh.simulate(rig, frame.set_index(moments[[0, 2, 1]]))
+
+
+def test_frames_of_pandas_in_the_place_of_files() -> None:
+    pd = pytest.importorskip("pandas")
+    folder = Path(gh.load("planetary").scenario.path).parent
+    frame, card = pd.read_csv(folder / "measured.csv", comment="#"), folder / "card.json"
+    losses = gh.losses("planetary", data=frame, card=card)
+    assert losses.found["rows"] == gh.losses("planetary", data=folder / "measured.csv", card=card).found["rows"]
+    assert not gh.card("planetary", frame).problems
+    assert (
+        path_of(frame.set_index(pd.date_range("2024-03-01", periods=len(frame), freq="h")))
+        .read_text()
+        .startswith(f"time,{','.join(frame.columns)}\n2024-03-01T00:00:00,")
+    )
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda rig: gh.steady(rig, {"room.T": None}), r"room\.T = None is no value"),
+        (lambda rig: gh.steady(rig, {"room.T": np.array([298.15])}), r"room\.T = array.* is no value"),
+        (lambda rig: gh.steady(rig, 3), "3 gives no name a value"),
+        (lambda rig: gh.map(rig, speed=np.linspace(1, 15, 3)), "--speed: .* is no range"),
+        (lambda rig: gh.rating(rig, "oil.T=95 degC", grid=2.5), "--grid: 2.5 is no grid"),
+        (lambda rig: gh.calibrate(rig, ["cooling.A"], bounds={"cooling.A": (2, 1)}), "must lie below"),
+        (lambda rig: gh.calibrate(rig, ["cooling.A"], bounds={"cooling.A": 1}), "is no range"),
+        (lambda rig: gh.design(rig, {"cooling.A": ("1 m2", "0.1 m2")}, {"oil.T": 350}), "must lie below"),
+        (lambda rig: gh.design(rig, {"cooling.A": (0.1, 0.2)}, {"oil.T": "60 degC"}), r"NAME=LOW\.\.HIGH"),
+        (lambda rig: gh.steady(rig, {"carrier.tau": "8,572 N.m"}), r'thousands\. Write "8572 N\.m" or "8\.572 N\.m"'),
+        (lambda rig: gh.steady(rig, {"carrier.tau": "1,234,567 N.m"}), r'Write "1234567 N\.m"'),
+        (lambda rig: gh.export(rig, "x.fmu", platform=["host", 3]), "platform: 3 is no text"),
+    ],
+)
+def test_what_python_may_not_give(rig: gh.Rig, ask: Callable[[gh.Rig], object], words: str) -> None:
+    with pytest.raises(gh.GearheatError, match=words):
+        ask(rig)
+
+
+def test_ranges_limits_and_bounds_in_any_form() -> None:
+    by_text = gh.map("helical_two_stage", speed="30..60 rad/s", torque="-600..-60 N.m", grid="2x2")
+    by_numbers = gh.map("helical_two_stage", speed=(30, 60), torque=(-600, -60), grid=(2, 2))
+    assert all((by_text.columns[name] == column).all() for name, column in by_numbers.columns.items())
+    limits = ("oil.T=95 degC", "oil.T<95 degC")
+    one, other = (gh.rating("helical_two_stage", one, room=(280, 300), grid=(2, 2)) for one in limits)
+    assert one.as_dict() == other.as_dict()
+    for free in ({"cooling.A": (0.1, 2.0)}, ["cooling.A=0.1..2 m2"], "cooling.A"):
+        assert gh.design("planetary", free, [("oil.T", 353.15)])["oil.T"] == pytest.approx(353.15)
+
+
+def test_the_limit_that_does_not_hold_is_named(rig: gh.Rig) -> None:
+    aims = (
+        ["oil.T=80 degC", "gear_set.T<60 degC"]
+        if "gear_set.T" in gh.steady(rig)
+        else ["oil.T=80 degC", "wall.T<60 degC"]
+    )
+    with pytest.raises(
+        gh.GearheatError, match=r"cooling\.A = .* gives oil\.T = 80 degC; there .*, which is not < 60 degC"
+    ):
+        gh.design(rig, "cooling.A", aims)

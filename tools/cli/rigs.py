@@ -79,14 +79,19 @@ def parts(
 
 def schema(
     out: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """JSON schema of rig files: editors complete and check them with it."""
     fitting(out, "a schema")
-    text = console.as_json(gh.schema())
+    found = gh.schema()
     if out is None:
-        print(text, end="")
+        console.answer(found, json or "-", lambda: None)
         return
-    console.write(out, text)
+    console.write(out, console.as_json(found))
+    console.answer(found, json, lambda: _print_schema(out))
+
+
+def _print_schema(out: Path) -> None:
     console.say(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
 
 

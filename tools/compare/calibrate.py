@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,17 @@ from ...fmu.export import export
 from ...fmu.play import Player
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, Problems, SolveError
-from ...model.units import from_si, show_unit, to_si
-from ...scenarios.given import RigLike, Settings, listed, scenario_of
+from ...model.units import from_si, show_unit
+from ...scenarios.frames import Table
+from ...scenarios.given import RigLike, Settings, listed, pairs_of, range_of, scenario_of
 from ...scenarios.measured.study import Measured, read_study
 from ..show.console import note
 from ..show.display import Answer
 from ..solve.settings import adjust, flat_of
 from . import campaign
 
+#: Correlation of two values from which on readings do not tell them apart.
+ALIKE = 0.99
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
 STEP = 1e-3
 
@@ -61,9 +65,9 @@ def calibrate(
     free: str | Sequence[str],
     *,
     grid: str | None = None,
-    bounds: Sequence[str] = (),
+    bounds: str | Sequence[str] | Mapping[str, Any] = (),
     set: Settings = (),
-    data: str | Path | None = None,
+    data: Table | None = None,
     card: str | Path | None = None,
 ) -> Calibration:
     """Fit parameters to the measured oil temperatures of a table, or of one of its grids.
@@ -72,9 +76,9 @@ def calibrate(
         rig: name, file or rig
         free: parameters to fit
         grid: value of the table's `mounting` or `grid` column to fit; all if None
-        bounds: ranges of free parameters, such as "cooling.A=0.4 m2..1.2 m2"
+        bounds: ranges of free parameters, such as {"cooling.A": (0.4, 1.2)} or "cooling.A=0.4 m2..1.2 m2"
         set: values by name: texts with units, quantities of pint, or numbers in SI
-        data: measured table; the rig's own if None
+        data: measured table, file or DataFrame; the rig's own if None
         card: how that table was taken
 
     Raises:
@@ -113,12 +117,22 @@ def calibrate(
             a: dict(zip(fit.names, line.tolist(), strict=True))
             for a, line in zip(fit.names, fit.correlation, strict=True)
         },
+        "notes": (notes := alike(fit)),
         "rmse_before_K": fit.rmse_before,
         "rmse_after_K": fit.rmse_after,
     }
+    for said in notes:
+        note(said)
     heading = f"{scenario.name}: fitted to {fit.readings} oil temperatures of {grid or 'all tests'}"
     rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in found["free"].items()]
     return Calibration(found, fit, heading=heading, shown=(("name", "value", "standard error", "unit", "before"), rows))
+
+
+def alike(fit: Fit) -> list[str]:
+    """Pairs of parameters that the readings do not tell apart, in words."""
+    pairs = combinations(range(len(fit.names)), 2)
+    found = [(fit.names[i], fit.names[k]) for i, k in pairs if abs(fit.correlation[i, k]) > ALIKE]
+    return [f"these data do not tell {a} from {b}: free one of them" for a, b in found]
 
 
 def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
@@ -135,22 +149,20 @@ def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
     return [flat.quantity(name) for name in free]
 
 
-def _parse_bounds(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
-    """The quantities with the ranges of texts such as "cooling.A=0.4 m2..1.2 m2"."""
+def _parse_bounds(quantities: Sequence[Quantity], bounds: Any) -> list[Quantity]:
+    """The quantities with the ranges given by name, or by texts such as "cooling.A=0.4 m2..1.2 m2"."""
     found = {q.name: q for q in quantities}
     problems = Problems()
-    for text in bounds:
-        name, _, ends = (part.strip() for part in text.partition("="))
-        low, dots, high = ends.partition("..")
-        if name not in found or not dots:
+    for one in pairs_of(bounds):
+        name, ends = [part.strip() for part in one.split("=", 1)] if isinstance(one, str) and "=" in one else (one, "")
+        name, ends = (name, ends) if isinstance(one, str) else one
+        if name not in found or not ends:
             ranges = " or ".join(f"{known}=LOW..HIGH" for known in found)
-            problems.append(f'--bounds "{text}": is no range of a free parameter. Write {ranges}, both with units.')
+            problems.append(f'--bounds "{name}": is no range of a free parameter. Write {ranges}, both with units.')
             continue
         with problems:
-            first, second = (to_si(end, found[name].unit, name=f"--bounds {name}") for end in (low, high))
-            if not first < second:
-                problems.append(f'--bounds "{text}": the first end must lie below the second.')
-            found[name] = replace(found[name], low=first, high=second)
+            low, high = range_of(ends, found[name], f"--bounds {name}")
+            found[name] = replace(found[name], low=low, high=high)
     problems.check()
     return list(found.values())
 

@@ -10,6 +10,7 @@ from typing import Any
 from ...model.errors import DataError, Problems, ScenarioError
 from ...model.files import flows
 from ...scenarios.csv_table import read_cells
+from ...scenarios.frames import Table, path_of, rows_told
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.checks import too_small
@@ -81,9 +82,10 @@ class CardText(Display):
         return place
 
 
+@rows_told()
 def card(
     rig: RigLike,
-    data: str | Path | None = None,
+    data: Table | None = None,
     *,
     columns: Mapping[str, str] | None = None,
     units: Mapping[str, str] | None = None,
@@ -93,7 +95,7 @@ def card(
 
     Args:
         rig: name, file or rig
-        data: table whose columns, units and signs are guessed
+        data: table, file or DataFrame, whose columns, units and signs are guessed
         columns: those that are known: sensor, path or optional column -> column of the table, "" where it has none
         units: those that are known: column of the table -> its unit
         magnitudes: whether the column of a sensor holds magnitudes, by its name, where that is known
@@ -110,7 +112,7 @@ def card(
     priors = usual_priors(scenario)
     if data is None:
         return CardText(scenario.name, default_card(scenario, priors))
-    path, problems = Path(data), Problems()
+    path, problems = path_of(data, name="--data"), Problems()
     if not path.is_file():
         raise DataError(f"--data {path}: there is no such file.")
     guessed = guess_card(path, scenario, Known(columns or {}, units or {}, magnitudes or {}))

@@ -13,6 +13,7 @@ from scipy.signal import lfilter
 
 from ...model.errors import DataError
 from ...model.units import from_si
+from ...scenarios.frames import Table, Tables, path_of, paths_of, rows_told
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
@@ -108,19 +109,20 @@ class Replays(Display):
         return Picture(figure, title)
 
 
+@rows_told()
 def replay(
     rig: RigLike,
-    fit: str | Path,
+    fit: Table,
     *,
     until: int | None = None,
-    logs: Sequence[str | Path] = (),
+    logs: Tables = (),
     card: str | Path | None = None,
 ) -> Replays:
     """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading.
 
     Args:
         rig: name, file or rig, whose parameters are used as they are
-        fit: log on which the rivals are fitted; it is replayed as well
+        fit: log, file or DataFrame, on which the rivals are fitted; it is replayed as well
         until: first year of that log which the rivals do not see; all of it without
         logs: further logs
         card: how the logs are written
@@ -133,11 +135,11 @@ def replay(
         >>> gh.replay("wind_turbine", "log.csv", until=2016)  # doctest: +SKIP
     """
     scenario, known = scenario_of(rig), read_card(None if card is None else Path(card))
-    first = read_log(Path(fit), scenario, known)
+    first = read_log(path_of(fit, name="--fit"), scenario, known)
     own, _ = filter_of(scenario, first)
     pieces = _split_log(first, until)
     rivals = Rivals(pieces[0], own.given, own.read)
-    others = [read_log(Path(path), scenario, known) for path in logs]
+    others = [read_log(path, scenario, known) for path in paths_of(logs)]
     found = []
     for log in (*pieces, *others):
         note(f"{log.name}: {log.n} samples")

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
 from threadpoolctl import threadpool_limits
 
+from ...scenarios.frames import Table as File, Tables as Files, path_or_none, paths_of, rows_told
 from ...scenarios.given import RigLike, listed
 from ..show.console import PICTURES, as_json, file_of, progress_bar, write
 from ..show.display import Display
@@ -24,9 +26,6 @@ from .report.page import picture, render
 from .report.screen import text
 from .report.tables import predictions_text
 from .request import MOST, PlanRequest, Request, read, read_plan
-
-File = str | Path
-Files = File | Sequence[File] | None
 
 
 @dataclass(frozen=True)
@@ -48,9 +47,15 @@ class Outputs:
 class Diagnosis(Display, Findings):
     """Findings that show themselves and are written."""
 
+    def __repr__(self) -> str:
+        return f"{self.title}\n{self.text().rstrip()}"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text())}</pre>\n{super()._repr_html_()}"
+
     @property
     def title(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict in a word."""
         return f"{self.about.rig}: {self.verdict}"
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
@@ -141,6 +146,7 @@ class PlanAnswer(Display, Plan):
         return plans.text(self, everything=everything, width=width)
 
 
+@rows_told()
 def diagnose(
     data: File | None,
     rig: RigLike,
@@ -164,7 +170,7 @@ def diagnose(
     """Compare measured data with the model of a rig, and name what explains the difference.
 
     Args:
-        data: table of readings, one row each; None with logs only
+        data: table of readings, one row each, a file or a DataFrame as all tables; None with logs only
         rig: name of a shipped rig, or path of a rig file
         card: accuracies, priors and protocol
         logs: tables of logged samples
@@ -190,20 +196,20 @@ def diagnose(
     """
     request = Request(
         rig,
-        _path(data),
-        _paths(logs),
-        _path(card),
-        _path(reference),
-        _paths(reference_logs),
-        _paths(sibling_logs),
-        _paths(library),
-        _path(predict),
+        path_or_none(data),
+        paths_of(logs),
+        path_or_none(card),
+        path_or_none(reference),
+        paths_of(reference_logs),
+        paths_of(sibling_logs),
+        paths_of(library),
+        path_or_none(predict),
         causes=causes,
         quick=quick,
         alpha=alpha,
         seed=seed,
-        series=_path(series),
-        reference_series=_path(reference_series),
+        series=path_or_none(series),
+        reference_series=path_or_none(reference_series),
     )
     problems, written = [], {} if outputs is None else outputs.files()
     if outputs is not None and predict is not None and outputs.predictions is None:
@@ -247,8 +253,10 @@ def plan(
         >>> import gearheat as gh
         >>> gh.plan("planetary", separate=["losses.churning", "losses.seals"])  # doctest: +SKIP
     """
-    request = PlanRequest(rig, tuple(listed(separate)), _path(card), _path(points), _paths(library), reference)
-    problems, picture = [], _path(out)
+    request = PlanRequest(
+        rig, tuple(listed(separate)), path_or_none(card), path_or_none(points), paths_of(library), reference
+    )
+    problems, picture = [], path_or_none(out)
     if picture is not None and picture.suffix.lower() not in PICTURES:
         kinds = " or ".join(PICTURES)
         problems.append(f"--out {out}: unknown kind of picture. Its name must end in {kinds}.")
@@ -260,11 +268,3 @@ def plan(
 
     with progress_bar() as progress, threadpool_limits(1, "blas"):
         return PlanAnswer.model_construct(**dict(diagnosis.plan(inputs, progress)))
-
-
-def _path(file: File | None) -> Path | None:
-    return None if file is None else Path(file)
-
-
-def _paths(files: Files) -> tuple[Path, ...]:
-    return tuple(Path(f) for f in ([files] if isinstance(files, str | Path) else files or ()))

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
 from ...model.errors import FmuError, Problems, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
-from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, listed, scenario_of
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
@@ -28,7 +29,7 @@ def export(
     set: Settings = (),
     drive: str | None = None,
     given: str = "speed",
-    platform: str = "host,win64",
+    platform: str | Sequence[str] = "host,win64",
     license: str = "",
     author: str = "",
     model_version: str = "",
@@ -87,7 +88,7 @@ def export(
         assignments_of(set, scenario.settable),
         drive,
         given,
-        platform,
+        ",".join(listed(platform, "platform")),
         None if extras is None else Path(extras),
         owner=Owner(author, model_version, license, date),
         with_sources=sources,
@@ -113,13 +114,13 @@ def _task(text: str) -> float:
     return step
 
 
-def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (), trust: bool = False) -> TimeSeries:
+def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), trust: bool = False) -> TimeSeries:
     """Play an FMU over a duty; one that was not made here only if it is trusted.
 
     Args:
         fmu: its file
         duty: CSV file with time and inputs, units in the header, or a DataFrame with the same column names
-        step: communication step
+        step: communication step, such as "10 s", or a number [s]
         set: start values of parameters and states by name
         trust: run native code of an FMU that was not made here
 
@@ -135,7 +136,7 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
     from ...fmu.play import play as play_fmu
 
     fmu = Path(fmu)
-    dt = to_si(step, "s", name="--step")
+    dt = in_seconds(step, "--step")
     about = describe(fmu)
     made_by = about.description.generationTool or "an unknown tool"
     if not (ours := is_trusted(fmu)):

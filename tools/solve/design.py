@@ -12,7 +12,7 @@ from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, evaluate_unchanged, least_change, rank
 from ...model.units import from_si, show_unit
-from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of, spell
+from ...scenarios.given import RigLike, Settings, assignments_of, pairs_of, range_of, scenario_of, spell
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import HEAD, Answer, Quantities
 from .settings import adjust, find_unchecked, flat_of
@@ -30,6 +30,7 @@ class _Case:
     flat: FlatModel
     targets: tuple[Target, ...]
     free: tuple[str, ...]
+    bounds: Mapping[str, tuple[float, float]]
     own: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -95,7 +96,7 @@ class DesignAnswer(Quantities, Answer):
 
 def design(
     rig: RigLike,
-    free: str | Sequence[str] = (),
+    free: str | Sequence[str] | Mapping[str, Any] = (),
     target: Settings = (),
     *,
     set: Settings = (),
@@ -105,7 +106,8 @@ def design(
 
     Args:
         rig: name, file or rig
-        free: parameters or inputs that may change, one for each value to reach
+        free: parameters or inputs that may change, one for each value to reach; with a range where it is bounded:
+            {"cooling.A": ("0.1 m2", "2 m2")}, or "cooling.A=0.1 m2..2 m2"
         target: values to reach by name, or texts such as "oil.T=80 degC", "oil.T<80 degC"
         set: values by name: texts with units, quantities of pint, or numbers in SI
         among: alternatives from a catalogue, such as "oil=PAOR,MINR" or "oil=all"
@@ -122,22 +124,21 @@ def design(
     """
     scenario = scenario_of(rig)
     part, names = _alternatives(scenario, among)
-    free, targets, assignments = listed(free), listed(target), assignments_of(set, scenario.settable)
-    if isinstance(target, Mapping):
-        known = scenario.readable()
-        targets = [_format_target(name, value, known.get(name)) for name, value in target.items()]
+    freed, assignments = pairs_of(free), assignments_of(set, scenario.settable)
+    known = scenario.readable()
+    targets = [one if isinstance(one, str) else _format_target(*one, known.get(one[0])) for one in pairs_of(target)]
     found: dict[str, Any] = {"schema": "gearheat.design/1", "rig": scenario.name}
-    case = _case(scenario, free, targets, assignments)
+    case = _case(scenario, freed, targets, assignments)
     if part is None:
-        solution = least_change(case.flat, case.free, case.targets, case.values)
+        solution = least_change(case.flat, case.free, case.targets, case.values, case.bounds)
         state = {name: float(column[0]) for name, column in solution.result.columns.items()} | dict(solution.values)
         return DesignAnswer(found | _solution(case, solution), case.setting, case.flat, state)
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
     for name in names:
-        other = case.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
+        other = case.filled(part, name) or _case(scenario, freed, targets, [*assignments, f"{part}={name}"])
         try:
-            search = least_change(other.flat, other.free, other.targets, other.values) if free else None
+            search = least_change(other.flat, other.free, other.targets, other.values, other.bounds) if freed else None
             solution = search or evaluate_unchanged(other.flat, other.targets, other.values)
         except SolveError as error:
             unsolved.append({part: name, "problems": list(error.problems)})
@@ -152,7 +153,7 @@ def design(
 
 def _format_target(name: str, value: Any, quantity: Quantity | None) -> str:
     """A target as the command line has it."""
-    text = spell(value, quantity)
+    text = spell(value, quantity, name)
     return f"{name}{text}" if text[:1] in "<>" else f"{name}={text}"
 
 
@@ -167,9 +168,12 @@ def _alternatives(scenario: Scenario, among: str | None) -> tuple[str | None, li
     return part, list(scenario.alternatives(part)) if names == [ALL] else names
 
 
-def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assignments: Sequence[str]) -> _Case:
+def _case(scenario: Scenario, freed: Sequence[Any], targets: Sequence[str], assignments: Sequence[str]) -> _Case:
     """One design, with the problems of everything given at once."""
     problems = Problems()
+    split = [one.partition("=")[::2] if isinstance(one, str) else one for one in freed]
+    ranges = {name.strip(): given for name, given in split}
+    free, bounds = [name.strip() for name, _ in split], dict[str, tuple[float, float]]()
     setting = scenario
     with problems:
         setting = adjust(scenario, assignments, named=free)
@@ -186,8 +190,10 @@ def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assig
     for name in free:
         with problems:
             flat.locate(name)
+            if ranges[name] not in ("", None):
+                bounds[name] = range_of(ranges[name], flat.quantity(name), f"--free {name}")
     problems.check()
-    return _Case(setting, flat, tuple(aims), tuple(free))
+    return _Case(setting, flat, tuple(aims), tuple(free), bounds)
 
 
 def _target(flat: FlatModel, written: str) -> Target:

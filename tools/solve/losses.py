@@ -19,6 +19,7 @@ from ...model.run.result import Result
 from ...model.run.rows import evaluate
 from ...model.run.steady import steady, steady_table
 from ...scenarios.entries import catalogue
+from ...scenarios.frames import Table
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.measured.lubrication import bath_of
 from ...scenarios.measured.readings import about
@@ -43,7 +44,7 @@ class LossTable(Answer):
 def losses(
     rig: RigLike,
     *,
-    data: str | Path | None = None,
+    data: Table | None = None,
     card: str | Path | None = None,
     temperature: str = "measured",
     power_flow: str | None = None,
@@ -54,7 +55,7 @@ def losses(
 
     Args:
         rig: name, file or rig
-        data: measured table; the rig's own if None
+        data: measured table, file or DataFrame; the rig's own if None
         card: how that table was taken
         temperature: "measured": at the measured oil temperature; "model": at the one the model reaches
         power_flow: "ideal": mesh forces from the input torque; "successive": each stage sees upstream losses

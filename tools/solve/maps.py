@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.run.design import design
 from ...model.units import from_si, show_unit, text
-from ...scenarios.given import RigLike, Settings, assignments_of, listed, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, grid_text, listed, range_text, scenario_of
 from ...scenarios.measured.nominal import Nominal
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import Columns, optional
@@ -47,6 +48,11 @@ def usual_range(scenario: Scenario, path: str) -> str:
     value = scenario.operating_point[path]
     low, high = (from_si(share * value, "rad/s" if path.endswith(".w") else "N.m") for share in USUAL)
     return f"{min(low, high):.4g}..{max(low, high):.4g} {'rpm' if path.endswith('.w') else 'N.m'}"
+
+
+def _range(scenario: Scenario, path: str, given: Any, option: str) -> str:
+    """A range as it is given, else the usual one."""
+    return usual_range(scenario, path) if given is None else range_text(given, scenario.settable()[path], option)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,9 +121,9 @@ class Map(Columns):
 def map_outputs(
     rig: RigLike,
     *,
-    speed: str | None = None,
-    torque: str | None = None,
-    grid: str = "21x21",
+    speed: Any = None,
+    torque: Any = None,
+    grid: str | Sequence[int] = "21x21",
     output: str | Sequence[str] = (),
     set: Settings = (),
 ) -> Map:
@@ -125,9 +131,9 @@ def map_outputs(
 
     Args:
         rig: name, file or rig
-        speed: range such as "300..1800 rpm"; about the operating point if None
+        speed: range such as "300..1800 rpm" or ("300 rpm", "1800 rpm"); about the operating point if None
         torque: range such as "-600..-60 N.m"; about the operating point if None
-        grid: points, speeds x torques
+        grid: points, speeds x torques, such as "21x21" or (21, 21)
         output: outputs to map; oil temperature, losses and efficiencies if none is named
         set: values by name: texts with units, quantities of pint, or numbers in SI
 
@@ -141,11 +147,11 @@ def map_outputs(
     """
     scenario = scenario_of(rig)
     paths = driving(scenario)
-    ranges = zip(paths, (speed, torque), strict=True)
-    vary = [f"{path}={written or usual_range(scenario, path)}" for path, written in ranges]
+    ranges = zip(paths, (speed, torque), ("--speed", "--torque"), strict=True)
+    vary = [f"{path}={_range(scenario, path, given, option)}" for path, given, option in ranges]
     shows = list(dict.fromkeys(listed(output))) or leading_outputs(scenario)
     assignments = assignments_of(set, scenario.settable)
-    plan = plan_sweep(Request(scenario, vary, None, grid=grid, assignments=assignments, outputs=shows))
+    plan = plan_sweep(Request(scenario, vary, None, grid=grid_text(grid), assignments=assignments, outputs=shows))
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
     if np.isnan(rows[:, : len(shows)]).all():
@@ -225,17 +231,17 @@ def rating(
     rig: RigLike,
     limit: str | Mapping[str, Any],
     *,
-    room: str | None = None,
-    speed: str | None = None,
-    grid: str = "5x5",
+    room: Any = None,
+    speed: Any = None,
+    grid: str | Sequence[int] = "5x5",
     set: Settings = (),
 ) -> Rating:
     """Thermal power: the continuous power at which the oil just keeps a limit, over room temperature and speed.
 
     Args:
         rig: name, file or rig
-        limit: what is kept, such as "oil.T=95 degC" or {"oil.T": "95 degC"}
-        room: range of the room temperature; 0 to 40 degC if None
+        limit: what is kept, such as "oil.T=95 degC", "oil.T<95 degC" or {"oil.T": "95 degC"}
+        room: range of the room temperature, such as "0..40 degC" or (273.15, 313.15), which it is if None
         speed: range of the speed; about the operating point if None
         grid: points, rooms x speeds
         set: values by name: texts with units, quantities of pint, or numbers in SI
@@ -252,17 +258,18 @@ def rating(
     (driven, torque), place = driving(scenario), scenario.room
     if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
-    varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
+    rooms = "0..40 degC" if room is None else range_text(room, scenario.settable()[place], "--room")
+    varied = sampling.read([f"{place}={rooms}", f"{driven}={_range(scenario, driven, speed, '--speed')}"])
     ways, both = {place: "--room", driven: "--speed"}, names_set(set)
     Problems(f"{n} is set, and varied. Give its range by {way}." for n, way in ways.items() if n in both).check()
     setting = adjust(scenario, set, named=[place, driven])
     flat = flat_of(setting)
-    limits = assignments_of(limit, scenario.readable)
+    limits = [re.sub("<=?", "=", text, count=1) for text in assignments_of(limit, scenario.readable)]
     if len(limits) != 1:
         raise ScenarioError(f"--limit: {len(limits)} are given. Rate for one at a time, and take the lower power.")
     written, aim = limits[0], parse_assignments(flat, limits)
     axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
-    values = sampling.lay_grid(axes, grid)
+    values = sampling.lay_grid(axes, grid_text(grid))
     powers, torques = np.full(len(values), np.nan), np.full(len(values), np.nan)
     load = abs(scenario.operating_point[torque])
     side = -1.0 if scenario.operating_point[torque] < 0 else 1.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -22,6 +21,7 @@ from ...model.run.simulate import OUTPUT_STEP, Through, simulate as integrate
 from ...model.run.steady import steady
 from ...model.units import SHOWN, from_si, in_unit, show_unit
 from ...scenarios.duty import duty_names, read_duty
+from ...scenarios.frames import Table, path_of, rows_told
 from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.columns import titled
@@ -48,8 +48,8 @@ STEPS = (
 #: Tolerance of the compiled code, with which it is 5e-6 K from IDAS (planetary rig, load and speed by the minute).
 TOLERANCE = 1e-6
 
-#: A duty: a CSV file, or a DataFrame whose column names have units, "time [min]" first.
-Duty = str | Path | Any
+#: A duty: a CSV file, or a DataFrame whose column names have units, "time [min]" first or as its index.
+Duty = Table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -185,15 +185,9 @@ class TimeSeries(Columns):
 
 @contextmanager
 def duty_file(duty: Duty) -> Iterator[Path]:
-    """The file of a duty; of a DataFrame, whose index may be the time, one that lasts as long as it is needed."""
-    if not hasattr(duty, "to_csv"):
-        yield Path(duty)
-        return
-    frame: Any = duty
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "duty.csv"
-        frame.to_csv(path, index=frame.index.name is not None)
-        yield path
+    """The file of a duty, a DataFrame's too; within it problems tell rows of the DataFrame."""
+    with rows_told():
+        yield path_of(duty, duty=True, name="duty")
 
 
 def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None) -> TimeSeries:

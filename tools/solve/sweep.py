@@ -19,7 +19,17 @@ from ...model.errors import Problems, SolveError
 from ...model.files import flows
 from ...model.units import from_si, show_unit
 from ...scenarios.duty import TIME
-from ...scenarios.given import RigLike, Settings, assignments_of, listed, pairs_of, range_text, scenario_of, spell
+from ...scenarios.given import (
+    RigLike,
+    Settings,
+    assignments_of,
+    grid_text,
+    listed,
+    pairs_of,
+    range_text,
+    scenario_of,
+    spell,
+)
 from ..show.console import counting, note
 from ..show.display import Display, optional
 from ..show.picture import Picture
@@ -162,14 +172,13 @@ def sweep(
     """
     scenario = scenario_of(rig)
     texts, counts = varied_texts(vary, scenario.settable)
-    grid = "x".join(map(str, grid)) if isinstance(grid, tuple | list) else grid if grid is None else str(grid)
     with duty_file(duty) if duty is not None else nullcontext() as path, tempfile.TemporaryDirectory() as folder:
         request = Request(
             scenario,
             texts,
             None if out is None else Path(out),
             sample,
-            grid or "x".join(counts) or None,
+            "x".join(counts) or None if grid is None else grid_text(grid),
             method,
             seed,
             assignments_of(set, scenario.settable),

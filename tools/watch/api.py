@@ -6,13 +6,14 @@ import hashlib
 import json
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from ...model.errors import DataError
+from ...scenarios.frames import Table, Tables, path_of, paths_of, rows_told
 from ...scenarios.given import RigLike
 from ...scenarios.measured.sensors import sensors_of
 from ..diagnose.request import Inputs, PlanRequest, Request, read_plan
@@ -29,13 +30,14 @@ File = str | Path
 TAKEN = " taken"
 
 
+@rows_told()
 def watch(
     rig: RigLike,
-    source: File,
+    source: Table,
     *,
     card: File | None = None,
-    reference_logs: Sequence[File] = (),
-    sibling_logs: Sequence[File] = (),
+    reference_logs: Tables = (),
+    sibling_logs: Tables = (),
     state: File | None = None,
     every: int = WINDOW,
     once: bool = False,
@@ -49,8 +51,8 @@ def watch(
 
     Args:
         rig: name of a shipped rig, or path of a rig file
-        source: CSV or Parquet file that grows, a folder whose files and sub-folders are a machine each, "-" for
-            standard input, or mqtt://HOST/TOPIC
+        source: CSV or Parquet file that grows, a DataFrame, a folder whose files and sub-folders are a machine each,
+            "-" for standard input, or mqtt://HOST/TOPIC
         card: columns, units and accuracies
         reference_logs: healthy logs of the one machine that is watched
         sibling_logs: a healthy log of each of other machines; a watched machine with the name of such a file has it
@@ -75,6 +77,7 @@ def watch(
         >>> for event in gh.watch("wind_turbine", "log.csv", once=True):  # doctest: +SKIP
         ...     print(event["event"], event["machine"])
     """
+    source = source if isinstance(source, str) else path_of(source, name="source")
     problems = [] if every >= 3 else [f"--every {every}: a window has three samples or more."]
     broker = str(source).startswith(tuple(f"{scheme}://" for scheme in PORTS))
     if not broker and str(source) != "-" and not Path(source).exists():
@@ -88,8 +91,8 @@ def watch(
     places = {"--state": state, "--page": page}
     written = {option: Path(file) for option, file in places.items() if file is not None}
     found = read_plan(PlanRequest(rig, card=None if card is None else Path(card)), written, problems)
-    paths = [tuple(map(Path, logs)) for logs in (reference_logs, sibling_logs)]
-    request = Request(rig, card=found.request.card, reference_logs=paths[0], sibling_logs=paths[1], alpha=alpha)
+    references, siblings = paths_of(reference_logs), paths_of(sibling_logs)
+    request = Request(rig, card=found.request.card, reference_logs=references, sibling_logs=siblings, alpha=alpha)
     inputs = Inputs(request, found.scenario, found.card, None, None, None)
     from ..diagnose.logs import read_logs  # what it needs loads slowly
     from .judge import Judge

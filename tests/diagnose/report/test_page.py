@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,9 @@ def test_a_picture_a_cause_and_the_readings_behind_it() -> None:
 
 def test_the_leading_cause_is_a_picture_of_its_own(tmp_path: Path) -> None:
     found = Diagnosis(**dict(explained()))
+    assert found.says.verdict and found.says.do
+    for shown in (" ".join(repr(found).split()), " ".join(unescape(found._repr_html_()).split())):
+        assert found.says.verdict in shown and found.says.do in shown
     drawn = found.drawing()
     assert drawn is not None and drawn.title == found.says.verdict and not words_that_collide(drawn.figure)
     assert Diagnosis(**dict(clean())).save_picture(tmp_path / "none.svg") is None and not list(tmp_path.iterdir())
