@@ -193,3 +193,13 @@ def test_the_limit_that_does_not_hold_is_named(rig: gh.Rig) -> None:
         gh.GearheatError, match=r"cooling\.A = .* gives oil\.T = 80 degC; there .*, which is not < 60 degC"
     ):
         gh.design(rig, "cooling.A", aims)
+
+
+def test_a_sweep_over_entries_of_a_catalogue(rig: gh.Rig) -> None:
+    names = ["MINR", "PAOR"]
+    rows = gh.sweep(rig, {"oil": names, "carrier.tau": [900, 2500]}, output="oil.T")
+    assert [column.name for column in rows.plan.columns[:2]] == ["row", "oil"]
+    wanted = [gh.steady(rig, {"oil": name, "carrier.tau": tau})["oil.T"] for name in names for tau in (900, 2500)]
+    assert rows.rows[:, 0] == pytest.approx(wanted)
+    with pytest.raises(gh.GearheatError, match='unknown oil "steel"'):
+        gh.sweep(rig, {"oil": ["MINR", "steel"]}, output="oil.T")

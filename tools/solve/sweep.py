@@ -37,7 +37,7 @@ from . import sampling
 from .cluster import run_on_cluster
 from .simulate import Duty, duty_file
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, Column, Store, local, words, work_file, write_table
+from .sweep_rows import TELLING, Block, Column, Store, local, work_file, write_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -100,7 +100,7 @@ class Sweep(Display):
             return read(self.out)
         whole = slice(0, len(self.plan.values))
         cells = zip(self.plan.columns, self.plan.cells(whole, self.rows), strict=True)
-        return pandas.DataFrame({c.title: words(n) if c.name == "status" else c.values(n) for c, n in cells})
+        return pandas.DataFrame({c.title: c.cells(n) for c, n in cells})
 
     def drawing(self) -> Picture | None:
         """Lines over one quantity that is varied, contours over two; of a warm-up its end. None without rows."""
@@ -144,7 +144,8 @@ def sweep(
     Args:
         rig: name, file or rig
         vary: name -> tuple (low, high) or (low, high, points of a grid), or a list of values, each combined with all
-            others; or texts such as "carrier.tau=500..2700 N.m", "carrier.tau=500,900,2700 N.m",
+            others, names of a catalogue for a part that is filled from one; or texts such as
+            "carrier.tau=500..2700 N.m", "carrier.tau=500,900,2700 N.m", "oil=PAOR,MINR",
             "cooling.A~normal(0.8, 0.05) m2", and "uncertainty" for every uncertain parameter of the rig
         out: CSV or Parquet file; in memory if None
         sample: number of random rows

@@ -28,7 +28,7 @@ from .sampling import UNCERTAINTY, draw_values, reasons, shares
 from .settings import adjust, find_unchecked, flat_of, refuse_given
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
-from .sweep_rows import SUFFIXES, TELLING, Column, Job
+from .sweep_rows import SUFFIXES, TELLING, WORDS, Column, Job
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}
@@ -67,7 +67,7 @@ class Plan:
     """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them.
 
     `unchecked` holds the catalogue entries in use with values never checked against a print, `drawn` the outputs
-    that a picture shows.
+    that a picture shows, `filled` the names of the entries that parts are filled from, by number of each row.
     """
 
     rig: str
@@ -78,6 +78,7 @@ class Plan:
     flat: FlatModel
     unchecked: Sequence[Mapping[str, Any]]
     drawn: Sequence[str]
+    filled: tuple[tuple[Column, np.ndarray], ...] = ()
 
     @property
     def columns(self) -> list[Column]:
@@ -86,10 +87,11 @@ class Plan:
         telling = {"energy_residual": "1", "outside": "1"}
         return [
             Column("row"),
+            *(column for column, _ in self.filled),
             *(Column(name, unit[name]) for name in self.job.varied),
             *([Column("time", "s")] if self.job.times else []),
             *(Column(name, unit[name]) for name in self.job.outputs),
-            *(Column(name, telling.get(name)) for name in TELLING),
+            *(Column(name, telling.get(name), WORDS if name == "status" else ()) for name in TELLING),
         ]
 
     @property
@@ -109,7 +111,8 @@ class Plan:
         values = np.repeat(self.values[rows], times, axis=0)
         number = np.repeat(np.arange(rows.start, rows.stop) + 1, times)
         moments = [np.tile(np.array(self.job.times), rows.stop - rows.start)] if self.job.times else []
-        return [number, *values.T, *moments, *found.T]
+        filled = [np.repeat(own[rows], times) for _, own in self.filled]
+        return [number, *filled, *values.T, *moments, *found.T]
 
     def outside(self, row: int) -> list[dict[str, Any]]:
         """The laws that one row used outside their range: the row is run again by itself."""
@@ -139,10 +142,12 @@ def plan_sweep(request: Request) -> Plan:
     vary = [text for text in request.vary if text != UNCERTAINTY]
     with problems:
         written = sampling.read(vary) if vary or not request.vary else ()
+    scenario = scenario_of(request.rig)
+    parts = {w.name: w.values for w in written if w.kind == "values" and w.name in scenario.types}
+    written = tuple(w for w in written if w.name not in parts)
     names = [w.name for w in written]
     given = {text.partition("=")[0].strip() for text in request.assignments}
-    problems += [f"--vary: {name} is set as well. Take one away." for name in names if name in given]
-    scenario = scenario_of(request.rig)
+    problems += [f"--vary: {name} is set as well. Take one away." for name in (*names, *parts) if name in given]
     scheduled: tuple[str, ...] = ()
     with problems:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
@@ -157,13 +162,36 @@ def plan_sweep(request: Request) -> Plan:
     found += [f"--vary: {name} is given by the duty. Take one away." for name in names if name in scheduled]
     Problems(filter(None, found)).check()
     axes = sampling.axes(written, {name: flat.quantity(name) for name in names})
+    axes = (*(sampling.Axis(n, "values", 0, len(v) - 1, tuple(range(len(v)))) for n, v in parts.items()), *axes)
     if request.sample is None:
         values = sampling.lay_grid(axes, request.grid or "")
     else:
         axes, values = _draw_rows(request, scenario, flat, axes)
+    filled = tuple((Column(n, words=v), values[:, k]) for k, (n, v) in enumerate(parts.items()))
+    axes, values = _fill(scenario, flat, filled, axes, values)
     job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
+    unchecked = find_unchecked(scenario, flat, [(part, name) for part, own in parts.items() for name in own])
     drawn = _outputs(request) or leading_outputs(scenario) or job.outputs[:MOST_PANELS]
-    return Plan(scenario.name, request.kind, axes, values, job, flat, find_unchecked(scenario, flat), drawn)
+    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked, drawn, filled)
+
+
+def _fill(
+    scenario: Scenario,
+    flat: FlatModel,
+    filled: Sequence[tuple[Column, np.ndarray]],
+    axes: tuple[sampling.Axis, ...],
+    values: np.ndarray,
+) -> tuple[tuple[sampling.Axis, ...], np.ndarray]:
+    """Axes and values (rows, axes) with what entries give parts in the place of their numbers, which come first."""
+    more, columns = list[sampling.Axis](), list[np.ndarray]()
+    for column, number in filled:
+        given = [scenario.following(scenario.entry_values(column.name, name)) for name in column.words]
+        own = {path: scenario.spec.part(path.rpartition(".")[0]).values for one in given for path in one}
+        for path in (path for path in own if path in flat.index):
+            each = np.array([one.get(path, own[path][path.rpartition(".")[2]]) for one in given])
+            more.append(sampling.Axis(path, "values", each.min(), each.max(), tuple(map(float, each))))
+            columns.append(each[number.astype(int)])
+    return (*more, *axes[len(filled) :]), np.column_stack([*columns, values[:, len(filled) :]])
 
 
 def _draw_rows(

@@ -143,10 +143,11 @@ class Store:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table: its name and SI unit; without a unit it holds whole numbers, "status" its words."""
+    """A column of the table: its name and SI unit; without a unit it holds whole numbers, or the words of such ones."""
 
     name: str
     unit: str | None = None
+    words: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -157,11 +158,13 @@ class Column:
         """Numbers in SI as the table shows them."""
         return numbers if self.unit is None else from_si(numbers, self.unit)
 
+    def cells(self, numbers: np.ndarray) -> list[Any]:
+        """Cells of the table for numbers in SI."""
+        return [self.words[int(n)] for n in numbers] if self.words else list(self.values(numbers).tolist())
 
-def words(status: np.ndarray) -> list[str]:
-    """The name of each status."""
-    names = {int(s): s.name.lower() for s in Status}
-    return [names[int(s)] for s in status]
+
+#: The name of each status, by its number.
+WORDS = tuple({int(s): s.name.lower() for s in Status}.get(k, "") for k in range(max(map(int, Status)) + 1))
 
 
 def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
@@ -183,17 +186,13 @@ def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[
 
 
 def _write_csv(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
-    formats = ["%s" if c.name == "status" else "%d" if c.unit is None else "%.9g" for c in columns]
+    formats = ["%s" if c.words else "%d" if c.unit is None else "%.9g" for c in columns]
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(",".join(cell_text(c.title) for c in columns) + "\n")
         line = ",".join(formats) + "\n"
         for block in blocks:
-            cells = [_cells(c, numbers) for c, numbers in zip(columns, block, strict=True)]
+            cells = [c.cells(numbers) for c, numbers in zip(columns, block, strict=True)]
             file.write("".join([line % row for row in zip(*cells, strict=True)]).replace("nan", ""))
-
-
-def _cells(column: Column, numbers: np.ndarray) -> list[Any]:
-    return words(numbers) if column.name == "status" else list(column.values(numbers).tolist())
 
 
 def _write_parquet(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
@@ -201,11 +200,11 @@ def _write_parquet(path: Path, columns: Sequence[Column], blocks: Iterator[Seque
     from pyarrow import parquet
 
     kinds: Mapping[bool, Any] = {True: pa.int64(), False: pa.float64()}
-    fields = [pa.field(c.title, pa.string() if c.name == "status" else kinds[c.unit is None]) for c in columns]
+    fields = [pa.field(c.title, pa.string() if c.words else kinds[c.unit is None]) for c in columns]
     schema = pa.schema(fields)
     with parquet.ParquetWriter(path, schema) as writer:
         for block in blocks:
-            cells = [pa.array(_cells(c, n), f.type) for c, n, f in zip(columns, block, fields, strict=True)]
+            cells = [pa.array(c.cells(n), f.type) for c, n, f in zip(columns, block, fields, strict=True)]
             writer.write_table(pa.Table.from_arrays(cells, schema=schema))
 
 
