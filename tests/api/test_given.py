@@ -29,7 +29,7 @@ def day(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(("every", "rows"), [(None, 1441), ("10 min", 145), (3600, 25)])
 def test_how_often_a_run_has_a_row(rig: gh.Rig, day: Path, every: object, rows: int) -> None:
-    assert len(gh.simulate(rig, day, every=every).time) == rows
+    assert len(gh.simulate(rig, day, every=every)) == rows
 
 
 def test_a_year_has_fewer_rows_and_says_so(
@@ -176,6 +176,9 @@ def test_ranges_limits_and_bounds_in_any_form() -> None:
     by_text = gh.map("helical_two_stage", speed="30..60 rad/s", torque="-600..-60 N.m", grid="2x2")
     by_numbers = gh.map("helical_two_stage", speed=(30, 60), torque=(-600, -60), grid=(2, 2))
     assert all((by_text.columns[name] == column).all() for name, column in by_numbers.columns.items())
+    assert len(by_text) == 4 and "oil.T" in by_text and "oil.X" not in by_text
+    np.testing.assert_allclose(by_text["oil.T"], by_text.columns["oil.T"] + 273.15)
+    np.testing.assert_allclose(by_text["input.w"], [30, 30, 60, 60])
     limits = ("oil.T=95 degC", "oil.T<95 degC")
     one, other = (gh.rating("helical_two_stage", one, room=(280, 300), grid=(2, 2)) for one in limits)
     assert one.as_dict() == other.as_dict()

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ...model.errors import Problems, ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import design
-from ...model.units import from_si, show_unit, text
+from ...model.units import SHOWN, from_si, show_unit, text
+from ...scenarios.csv_table import in_si
 from ...scenarios.given import RigLike, Settings, assignments_of, grid_text, listed, range_text, scenario_of
 from ...scenarios.measured.nominal import Nominal
 from ...scenarios.scenario import Scenario, parse_assignments
@@ -73,6 +74,21 @@ class Map(Columns):
     units: Mapping[str, str]
     point: Mapping[str, float]
     limits: Mapping[str, float]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column in SI. Raises ScenarioError with suggestions for an unknown name."""
+        if name not in self.columns:
+            raise ScenarioError(f'{self.rig}: there is no column "{name}".{suggestion(name, self.columns)}')
+        unit = self.units[name]
+        return in_si(self.columns[name], unit, SHOWN.get(unit, unit), name=name)
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of its columns."""
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        """Number of its points."""
+        return len(next(iter(self.columns.values())))
 
     @property
     def title(self) -> str:

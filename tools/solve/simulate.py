@@ -82,6 +82,10 @@ class TimeSeries(Columns):
         """Paths of its columns."""
         return iter(self.columns)
 
+    def __len__(self) -> int:
+        """Number of its rows."""
+        return len(self.time)
+
     def to(self, name: str, unit: str) -> np.ndarray:
         """A column in a unit.
 
