@@ -47,7 +47,9 @@ _COMMA = re.compile(r"\d,\d")
 #: A decimal point.
 _POINT = re.compile(r"\.\d")
 #: Commas that may stand between thousands.
-_THOUSANDS = re.compile(r"(?<!\d)[1-9]\d{0,2}(,\d{3})+(?![\d,])")
+_THOUSANDS = re.compile(r"(?<![\d.])[1-9]\d{0,2}(,\d{3})+(?![\d,])")
+#: A point between thousands, where a comma is that of the decimals.
+_GROUPED = re.compile(r"(?<=\d)\.(?=\d{3}(?!\d))")
 #: A digit that is not zero.
 _DIGIT = re.compile(r"[1-9]")
 #: Longest unit [characters].
@@ -153,7 +155,8 @@ def refuse_comma(text: str, name: str) -> None:
     """
     if _COMMA.search(text):
         ways = [text.replace(",", "")] if _THOUSANDS.search(text) else []
-        ways += [text.replace(",", ".")] if text.count(",") == 1 and not _POINT.search(text) else []
+        decimal = text.count(",") == 1 and not _POINT.search(text, text.index(","))
+        ways += [_GROUPED.sub("", text).replace(",", ".")] if decimal else []
         written = " or ".join(f'"{way}"' for way in ways)
         kind = "decimal comma" + ", or one between thousands" * (len(ways) > 1)
         raise ScenarioError(

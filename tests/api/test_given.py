@@ -164,6 +164,8 @@ def test_frames_of_pandas_in_the_place_of_files() -> None:
         (lambda rig: gh.design(rig, {"cooling.A": (0.1, 0.2)}, {"oil.T": "60 degC"}), r"NAME=LOW\.\.HIGH"),
         (lambda rig: gh.steady(rig, {"carrier.tau": "8,572 N.m"}), r'thousands\. Write "8572 N\.m" or "8\.572 N\.m"'),
         (lambda rig: gh.steady(rig, {"carrier.tau": "1,234,567 N.m"}), r'Write "1234567 N\.m"'),
+        (lambda rig: gh.steady(rig, {"carrier.tau": "1.450,5 N.m"}), r'Write "1450\.5 N\.m"'),
+        (lambda rig: gh.steady(rig, {"carrier.tau": "1,450.5 N.m"}), r'Write "1450\.5 N\.m"'),
         (lambda rig: gh.export(rig, "x.fmu", platform=["host", 3]), "platform: 3 is no text"),
     ],
 )
