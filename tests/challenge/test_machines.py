@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from challenge import machines
 from challenge.hide import APART
+from challenge.sheets import MAKERS
 from gearheat.scenarios.load import load
 
 #: Kind of a case -> its number, and how few and many causes it hides.
@@ -22,7 +23,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path
     @cache
     def make(kind: str) -> tuple[Path, dict[str, Any]]:
         folder = tmp_path_factory.mktemp(kind)
-        return folder, machines.make(5, 3, CASES[kind][0], folder, kind)
+        return folder, machines.make(machines.Machine, 5, 3, CASES[kind][0], folder, kind)
 
     return make
 
@@ -41,7 +42,7 @@ def test_a_case_shows_what_it_hides(kind: str, made) -> None:
 
 def test_a_case_is_what_its_seed_says(made, tmp_path: Path) -> None:
     folder, first = made("several")
-    again = machines.make(5, 3, CASES["several"][0], tmp_path, "several")
+    again = machines.make(machines.Machine, 5, 3, CASES["several"][0], tmp_path, "several")
     for file in ("DATA.csv", "machine.toml"):
         assert (folder / "case" / file).read_bytes() == (tmp_path / "case" / file).read_bytes()
     assert first["effects"] == again["effects"]
@@ -54,3 +55,16 @@ def test_probes_that_err_together_are_nearer_to_their_rivals_than_one_alone(made
     near, _ = machine.distance([oil, wall], {"sensor.oil_temp.offset", "sensor.wall_temp.offset"})
     far, _ = machine.distance([oil], {"sensor.oil_temp.offset"})
     assert near < far and far > APART and truth["rival"]["distance"] >= 0.0
+
+
+@pytest.mark.parametrize(("sheet", "files"), [("logs", ["LOG.csv", "REFLOG.csv"]), ("lone_logs", ["LOG.csv"])])
+def test_logs_of_machines(sheet: str, files: list[str], tmp_path: Path) -> None:
+    """Their rows are evenly apart, the same seed gives the same ones, and what is hidden shows."""
+    truth = MAKERS[sheet](2, 0, tmp_path / "first", kind="single")
+    MAKERS[sheet](2, 0, tmp_path / "again", kind="single")
+    assert sorted(path.name for path in (tmp_path / "first" / "case").glob("*.csv")) == files
+    for name in files:
+        assert (tmp_path / "first" / "case" / name).read_bytes() == (tmp_path / "again" / "case" / name).read_bytes()
+        table = np.genfromtxt(tmp_path / "first" / "case" / name, delimiter=",", names=True)
+        assert len(set(np.diff(table["time_s"]))) == 1 and np.isfinite(table["T_oil_C"]).all()
+    assert len(truth["causes"]) == 1 and truth["effects"][0]["snr"] >= machines.LEAST and truth["rival"]["cause"]

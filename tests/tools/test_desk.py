@@ -129,6 +129,15 @@ def test_cells_below_zero_are_no_magnitudes(tmp_path: Path) -> None:
     assert study.given(0)["sun.tau"] == -300
 
 
+def test_noise_at_rest_is_below_zero_in_a_column_of_magnitudes(tmp_path: Path) -> None:
+    rows = [f"{100 * (k > 0)};{(300 + 20 * k) if k else -2};{50 + 2 * k};20" for k in range(7)]
+    (path := tmp_path / "feld.csv").write_text(
+        "\n".join(["n_carrier_rpm;T_sun_Nm;T_oil;T_amb", *rows]), encoding="utf-8"
+    )
+    said = [gh.card("planetary", path, magnitudes=known).as_dict()["sensors"] for known in ({}, {"T_sun": True})]
+    assert said[0]["T_sun"]["magnitude"] == said[1]["T_sun"]["magnitude"] is True
+
+
 def test_a_torque_that_nothing_says_is_told(tmp_path: Path) -> None:
     rows = [f"{2000 + 100 * k};{50 + 2 * k};20" for k in range(7)]
     (path := tmp_path / "feld.csv").write_text("\n".join(["n_motor_rpm;T_oil;T_amb", *rows]), encoding="utf-8")

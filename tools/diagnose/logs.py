@@ -300,7 +300,8 @@ def _pictures(
     time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(days))
     found = []
     for cause, e in after.items():
-        best = int(np.argmax(np.nansum(before**2 - e**2, axis=0)))  # where most is taken away
+        share = np.nansum(before**2 - e**2, axis=0) / np.nansum(before**2 + own.read_sd**2, axis=0)
+        best = int(np.argmax(share))  # where most of what is more than noise is taken away
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     errors = [(s, float(e)) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,21 +18,34 @@ from gearheat.scenarios.measured.nominal import drive_by
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.diagnose.infer.logs import filter_of, independent
-from gearheat.tools.diagnose.model.logs import Passed
+from gearheat.tools.diagnose.model.logs import TAILS, Passed
 from gearheat.tools.diagnose.model.windows import windows
 
+#: Nothing differs.
+NONE: Mapping[str, float] = {}
 #: Samples, and time between them [s].
 N, STEP = 720, 600.0
 
 
-def record(path: Path, scenario: Scenario, seed: int, *only: str, thinner: float = 1.0) -> Path:
-    """A log of a rig with some readings, all if none is named; the oil may be thinner than that of the rig."""
+def record(
+    path: Path, scenario: Scenario, seed: int, *only: str, thinner: float = 1.0, changed: Mapping[str, float] = NONE
+) -> Path:
+    """A log of a rig with some readings, all if none is named; the oil may be thinner than that of the rig.
+
+    Args:
+        path: of the file
+        scenario: the rig
+        seed: of inputs and noise
+        only: readings, all if none is named
+        thinner: by what factor the oil is thinner than that of the rig
+        changed: values of the machine that the rig has otherwise
+    """
     sensors = [s for s in sensors_of(scenario, Card()) if s.role == "given" or not only or s.name in only]
     driven, rng = drive_by(scenario, sensors), np.random.default_rng(seed)
     if thinner != 1.0:
         oil = driven.spec.part("oil").values
         driven = driven.with_values({f"oil.{key}": float(oil[key]) / thinner for key in ("nu_40", "nu_100")})
-    flat = driven.spec.flat()
+    flat = driven.with_values(changed).spec.flat()
     point = {path: value for path, value in driven.operating_point.items() if path in flat.index}
     corners = 12 * STEP * np.arange(N // 12 + 1)
     changes = {s.reads: rng.uniform(0.0, 1.0, len(corners)) for s in sensors if s.role == "given"}
@@ -132,3 +146,59 @@ def test_a_replay_of_a_log_of_some_hours(tmp_path: Path) -> None:
     first, second = gh.replay("planetary", path, logs=[short]).logs
     assert [len(log.ahead["rig"]["T_oil"]) for log in (first, second)] == [5, 2]
     assert set(second.shown) == {"T_oil", "T_oil2", "T_wall"} and "T_sun" in second.free["rig"]
+
+
+@pytest.fixture(scope="module")
+def own_unit(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A unit of `gearheat new` with a torque transducer at either end."""
+    path = tmp_path_factory.mktemp("own") / "mine.toml"
+    gh.new("mine", stages="helical,helical", ratio=10, power="11 kW", speed="1450 rpm", out=path)
+    shown = 'T_output_Nm = "output.tau"'
+    assert path.read_text("utf-8").count(shown) == 1
+    path.write_text(path.read_text("utf-8").replace(shown, f'{shown}\nT_input_Nm = "input.tau"'), "utf-8")
+    return path
+
+
+def test_a_bearing_whose_friction_the_rig_file_leaves_at_its_default_is_named(own_unit: Path, tmp_path: Path) -> None:
+    scenario = load(own_unit)
+    assert "k_loss" not in scenario.spec.part("input_bearing_a").values
+    past = record(tmp_path / "past.csv", scenario, 1)
+    now = record(tmp_path / "now.csv", scenario, 2, changed={"input_bearing_a.k_loss": 4.0})
+    found = gh.diagnose(None, own_unit, logs=now, reference_logs=past, quick=True)
+    assert found.answers[0].causes == (("losses.bearing_preload",),)
+    assert found.causes[0].parameters[0].value == pytest.approx(np.log(4.0), abs=0.3)
+
+
+def test_steps_of_a_sample_follow_what_is_fast(own_unit: Path, tmp_path: Path) -> None:
+    """A stage of ten minutes is too long for what settles in some; more of them come nearer to the courses."""
+    log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
+    own, knobs = filter_of(scenario, log)
+    data = windows([log], own.given, own.read, 0)
+    at = np.zeros((len(data.read), len(knobs)))
+    shown = {}
+    for own.parts in (1, 4, 16):
+        shown[own.parts] = own.run(data, at, free=True).shown
+    far, near = (float(np.nanmax(np.abs(shown[k] - shown[16])[:, :, 0])) for k in (1, 4))
+    assert near < 0.3 * far
+
+
+@pytest.mark.parametrize(("moments", "parts"), [(False, 1), (False, 3), (True, 2)])
+def test_slopes_are_those_of_the_likelihood(own_unit: Path, tmp_path: Path, moments: bool, parts: int) -> None:
+    log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
+    own, knobs = filter_of(scenario, log)
+    own.moments, own.parts, sd = moments, parts, np.array([k.sd for k in knobs])
+    data = windows([log], own.given, own.read)
+    at = np.tile(0.3 * sd * np.random.default_rng(3).standard_normal(len(sd)), (len(data.read), 1))
+
+    def likelihood(z: np.ndarray) -> float:
+        passed = own.run(data, z, slopes=False)
+        far = np.nansum(passed.error**2 / passed.variance, axis=2)
+        return float(-(TAILS + len(own.read)) / 2 * np.log1p(far / TAILS).sum())
+
+    names = [k.name for k in knobs]
+    slope = own.run(data, at).slope.sum(axis=0)
+    for name in ("stage_1: friction", "cooling: conductance", "T_output: gain", "T_input: gain", "n_input: gain"):
+        k = names.index(name)
+        step = 1e-3 * sd[k] * np.eye(len(sd))[k]
+        by_hand = (likelihood(at + step) - likelihood(at - step)) / (2e-3 * sd[k])
+        assert slope[k] == pytest.approx(by_hand, rel=0.05), name

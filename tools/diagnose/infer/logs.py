@@ -23,9 +23,13 @@ from ..model.windows import WINDOW, Windows, windows
 from .levels import Levels, Quadratics, estimate, first_levels
 from .problem import Look, Problem
 
-#: Passes over logs at most; knobs move by so many standard deviations between machines at most, and stay where a move
-#: makes the logs likelier by less than so much. They stay the nearer the less likely the logs become.
-PASSES, FAR, LITTLE = 30, 2.0, 1.0
+#: Passes over logs at most.
+PASSES = 30
+#: Knobs move by so many standard deviations between machines at most,
+FAR = 2.0
+#: and stay where a move makes the logs likelier by less than so much.
+LITTLE = 1.0
+#: They stay the nearer the less likely the logs become: weights of that, in inverse variances between machines.
 DAMPINGS = (0.0, 1.0, 10.0, 100.0, 1000.0)
 #: Passes at first that take every move: what switches makes logs less likely before it makes them likelier.
 FREE = 4
@@ -44,8 +48,10 @@ SHORTEST = 40
 FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
-#: Steps of a sample at most; another twice as many change what is foreseen by less than so much of its errors.
-PARTS, NEAR = 8, 0.1
+#: Steps of a sample at most.
+PARTS = 8
+#: Twice as many change what is foreseen by so little of its errors.
+NEAR = 0.1
 #: Windows by which it is told whether logs hold means.
 TIMED = 24
 #: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
