@@ -25,6 +25,8 @@ from .problem import Look, Problem
 
 #: Passes over logs at most.
 PASSES = 30
+#: Windows by which the likeliest knobs are sought, at most.
+SOUGHT = 96
 #: Knobs move by so many standard deviations between machines at most,
 FAR = 2.0
 #: and stay where a move makes the logs likelier by less than so much.
@@ -207,19 +209,25 @@ def _walk(
         knobs (groups, k), the pass there, and what the windows say there
     """
     begun, known, sd = expected[0], np.linalg.inv(expected[1]), np.array([k.sd for k in own.knobs])
-    z = np.tile(begun, (int(group.max()) + 1, 1))
+    z, places = np.tile(begun, (int(group.max()) + 1, 1)), np.linspace(0, len(group) - 1, min(len(group), SOUGHT))
+    some = places.astype(int)
+    few, of, whole = data.some(some), group[some], len(group) / len(some)
 
     def value(passed: Passed, z: np.ndarray) -> float:
         return counted * log_likelihood(passed) - float(np.einsum("ni,ij,nj", z - begun, known, z - begun)) / 2
 
     best = -np.inf, z
     for n in range(PASSES):
-        passed = own.run(data, z[group], progress=partial(progress, n))
-        said, scatter, counted = _quadratics(passed, z[group]), own.scatter, share or min(independent(passed), 1.0)
+        passed = own.run(few, z[of], progress=partial(progress, n))
+        said, scatter, counted = (
+            _quadratics(passed, z[of]),
+            own.scatter,
+            whole * (share or min(independent(passed), 1.0)),
+        )
         if own.learns:
             own.scatter = _scatter(own, passed)
-            passed = own.run(data, z[group], slopes=False)
-        told, least = said.times(counted).summed(group, len(z)), value(passed, z)
+            passed = own.run(few, z[of], slopes=False)
+        told, least = said.times(counted).summed(of, len(z)), value(passed, z)
         H = told.H + known
         uphill, gained = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None], 0.0
         best = max(best, (least, z), key=lambda tried: tried[0])
@@ -229,13 +237,14 @@ def _walk(
             continue
         for damping in DAMPINGS:
             step = np.linalg.solve(H + damping * np.diag(sd**-2), uphill)[:, :, 0].clip(-FAR * sd, FAR * sd)
-            gained = value(own.run(data, (z + step)[group], slopes=False), z + step) - least
+            gained = value(own.run(few, (z + step)[of], slopes=False), z + step) - least
             if free or gained >= 0:
                 break
         if n + 1 == PASSES or (not free and gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
             break
         z = z + step if free or gained > 0 else z
-    return z, passed, said
+    passed = own.run(data, z[group])
+    return z, passed, _quadratics(passed, z[group])
 
 
 def _suit(own: Filter, data: Windows, z: np.ndarray) -> None:
