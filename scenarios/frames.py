@@ -89,9 +89,8 @@ def _timed(frame: Any, duty: bool) -> Any:
     """A DataFrame whose times are text or seconds: those of its index, or of a column of time."""
     index, kinds = frame.index, frame.dtypes
     if getattr(index.dtype, "kind", "O") in "mM":
-        return frame.assign(**{_title("time", index, duty): _written(index, duty)}).set_index(
-            _title("time", index, duty)
-        )
+        title = _title("time", index, duty)
+        return frame.assign(**{title: _written(index, duty)}).set_index(title)
     for name in find_times(map(str, frame.columns)):
         if getattr(kinds[name], "kind", "O") in "mM":
             times = frame[name].array

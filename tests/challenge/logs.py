@@ -82,17 +82,18 @@ class Logged(Machine):
         durations = shares * duration / shares.sum()
         durations[-1] += -duration % step
         phases, now, last = [], 0.0, (0.7, 0.6)
+        n, load_ = self.nominal.value("input.w"), self.nominal.value("output.load")
         level = self.room + EACH_DAY * rng.standard_normal()
         for d in durations:
             ends = float(rng.uniform(0.35, 1.0)), float(rng.uniform(0.2, 1.0))
             if rng.random() < STOPS:
                 ends = STOPPED, STOPPED
             (n0, n1), (l0, l1) = zip(last if wander else ends, ends, strict=True)
-            halls = [level + DAILY * np.sin(2 * np.pi * t / DAY) + 273.15 for t in (now, now + d)]
-            n, load_ = self.nominal.value("input.w"), self.nominal.value("output.load")
-            phases.append((d, {"input.w": (n0 * n, n1 * n), "output.load": (l0 * load_, l1 * load_), "room.T": halls}))
+            begin, end = (level + DAILY * np.sin(2 * np.pi * t / DAY) + 273.15 for t in (now, now + d))
+            given = {"input.w": (n0 * n, n1 * n), "output.load": (l0 * load_, l1 * load_), "room.T": (begin, end)}
+            phases.append((d, given))
             now, last = now + d, ends
-        return join_phases([(d, {name: (a, b) for name, (a, b) in values.items()}) for d, values in phases])
+        return join_phases(phases)
 
     def _loss(self) -> float:
         """Mean of the samples [W]."""
@@ -144,13 +145,15 @@ class Logged(Machine):
     def effects(self, changes: Sequence[tuple[Change, Change]]) -> list[np.ndarray]:
         """What values and errors do to all readings."""
         states = self._run([({}, changed) for changed, _ in changes])
-        shown = [self._shown(state, errors) for state, (_, errors) in zip(states, changes, strict=True)]
-        return [self.in_repeatabilities(s - self.sound) for s in shown]
+        return [self._moved(state, errors) for state, (_, errors) in zip(states, changes, strict=True)]
 
     def deviations(self) -> list[np.ndarray]:
         """What each factor of the true machine does to all readings, for its logarithm."""
         states = self._run([({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal])
-        return [self.in_repeatabilities(self._shown(state, {}) - self.sound) / SMALL for state in states]
+        return [self._moved(state, {}) / SMALL for state in states]
+
+    def _moved(self, state: Mapping[str, np.ndarray], errors: Change) -> np.ndarray:
+        return self.in_repeatabilities(self._shown(state, errors) - self.sound)
 
     def unsteady(self) -> list[np.ndarray]:
         """Nothing besides: factors are constant, and the hall is logged."""

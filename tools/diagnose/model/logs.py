@@ -122,8 +122,7 @@ class Filter:
                 dp[:, self.plant.knobs.index(path), j] = exponent * p[:, self.plant.place[path]]
             for path in knob.shifted:
                 dp[:, self.plant.knobs.index(path), j] = 1.0
-        names = ("p", "dp", "factor", "shift", "scaled", "offset", "by")
-        return dict(zip(names, (p, dp, factor, shift, scaled, offset, by), strict=True))
+        return {"p": p, "dp": dp, "factor": factor, "shift": shift, "scaled": scaled, "offset": offset, "by": by}
 
     @property
     def noise(self) -> np.ndarray:
