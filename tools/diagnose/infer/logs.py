@@ -11,7 +11,7 @@ import numpy as np
 
 from ....model.machines.roles import Roles
 from ....scenarios.measured.logs import Log
-from ....scenarios.measured.nominal import drive_by
+from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
@@ -114,12 +114,15 @@ class Fleet:
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     """A rig, driven by what logs give, and its knobs, compiled for logs with the sensors of one."""
-    driven = drive_by(scenario, log.sensors).spec
-    roles = Roles.of(driven)
+    driven = drive_by(scenario, log.sensors)
+    roles = Roles.of(driven.spec)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
-    flat = driven.with_values(relays).flat()
-    found = tuple(k for k in knobs(roles, log.sensors) if flat.index.keys() >= set(k.paths))
+    flat, nominal = driven.spec.with_values(relays).flat(), Nominal(driven)
+    loss = abs(sum(nominal.value(f"{end}.w") * nominal.value(f"{end}.tau") for end in roles.ends))
+    given = {s.reads for s in log.sensors}
+    found = tuple(k for k in knobs(roles, log.sensors, loss) if flat.index.keys() - given >= set(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
+    flat = flat.holding(paths)
     plant = Plant(flat, paths, [s.reads for s in log.given], [s.reads for s in log.read])
     bodies, states = plant.flat.bodies, plant.flat.states
     noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])

@@ -7,7 +7,7 @@ the log, from a date on, or as a drift.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ....model.machines.roles import Roles
@@ -31,8 +31,8 @@ class Knob:
         cause: identifier of the cause that it is where it has moved
         doc: what has happened then
         unit: of z; "1" for the logarithm of a factor
-        usual: size of the cause that is usual [unit]
-        sd: standard deviation between machines of one type [unit]
+        usual: size of the cause that is usual [unit], of powers in the table as a share of the typical loss
+        sd: standard deviation between machines of one type; in the same way
         scaled: parameters multiplied by exp(exponent z): path -> exponent
         shifted: parameters to which z is added [SI]
         sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
@@ -93,10 +93,12 @@ def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
     return Form(name, weight, when.shapes, values=values, regime=FROM_THEN if when.shapes else {})
 
 
-def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
-    """All knobs that a machine and the sensors of its log have."""
+def knobs(roles: Roles, sensors: Sequence[Sensor], loss: float) -> tuple[Knob, ...]:
+    """All knobs that a machine with a typical loss [W] and the sensors of its log have."""
     rows = TABLE["knobs"]["rows"]
-    return (*_teeth(roles), *(knob for row in rows for knob in _parts(roles, **row)), *_sensors(sensors))
+    found = [knob for row in rows for knob in _parts(roles, **row)]
+    found = [replace(k, usual=loss * k.usual, sd=loss * k.sd) if k.unit == "W" else k for k in found]
+    return (*_teeth(roles), *found, *_sensors(sensors))
 
 
 def _teeth(roles: Roles) -> Iterator[Knob]:
