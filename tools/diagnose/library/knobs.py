@@ -70,6 +70,8 @@ def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
     """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move."""
     groups: dict[str, list[Knob]] = {}
     for knob in found:
+        if not knob.cause:
+            continue
         groups.setdefault(knob.cause, []).append(knob)
     return tuple(_cause(own) for own in groups.values())
 
@@ -146,3 +148,5 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
         elif s.kind in GAINS:
             doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
             yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)
+            if s.kind == "torque":
+                yield Knob(f"{s.name}: zero error", "", "", s.unit, s.offset_sd, s.offset_sd, sensor=s.name)
