@@ -190,7 +190,9 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        warnings=tuple(filter(None, dict.fromkeys([_lacking(data), *(w for log in logs for w in log.warnings)]))),
+        warnings=tuple(
+            filter(None, dict.fromkeys([_lacking(data), _undated(data), *(w for log in logs for w in log.warnings)]))
+        ),
     )
 
 
@@ -216,6 +218,12 @@ def _lacking(data: Logs) -> str:
     lacks = " and ".join(name for name, logs in given.items() if not logs)
     said = "it is not known how healthy machines of this type differ: changes are judged by priors"
     return f"without {lacks} {said}" if lacks else ""
+
+
+def _undated(data: Logs) -> str:
+    if data.logs[0].dated or not data.reference:
+        return ""
+    return "the logs have no dates: those in question are taken as two weeks after the reference. Give dates if not"
 
 
 def _gross(logs: Sequence[Log]) -> list[GrossReading]:

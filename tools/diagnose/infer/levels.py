@@ -37,6 +37,17 @@ class Quadratics:
         H = both[:, :, :-1]
         return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
 
+    def bent(self, at: np.ndarray, to: np.ndarray, slope: np.ndarray) -> Quadratics:
+        """The same of other numbers, each of which follows one of the knobs.
+
+        Args:
+            at: knobs where this is exact (n, k)
+            to, slope: the other numbers there, and their slopes by the knobs (n, k)
+        """
+        H = self.H / slope[:, :, None] / slope[:, None, :]
+        gradient = (self.eta - (self.H @ at[:, :, None])[:, :, 0]) / slope
+        return Quadratics(gradient + (H @ to[:, :, None])[:, :, 0], H)
+
     def times(self, share: float) -> Quadratics:
         """The same from a share of the samples."""
         return Quadratics(share * self.eta, share * self.H)

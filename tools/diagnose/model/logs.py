@@ -133,16 +133,6 @@ class Filter:
                 found[state] = FOLLOWS * self.scatter[j]
         return found
 
-    def noise_of(self, step):
-        import os
-        a, b = float(os.environ.get("FA", 0)), float(os.environ.get("FB", 0))
-        r = step / 600.0
-        found = self.drift * r**b
-        for j, state in enumerate(self.state_of):
-            if state >= 0:
-                found[state] = FOLLOWS * self.scatter[j] * r**a
-        return found
-
     def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """States at the start (N, nx), and their standard deviations (nx,)."""
         x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
@@ -212,7 +202,7 @@ class Filter:
             x0=x,
             z0=self.plant.flat.starts("algebraic"),
             P0=sd**2,
-            Q=self.noise_of(data.step)**2 / (2 if self.moments else 1),
+            Q=self.noise**2 / (2 if self.moments else 1),
             scatter=self.scatter,
             step=np.array([data.step]),
             tails=np.array([TAILS]),
