@@ -57,6 +57,7 @@ class Fleet:
         share: of their samples that counts, 0 without any
         length: samples of a window that count
         at: knobs of the machines at which they say it (machines, k)
+        curves: of its knobs
         seasons: machine and number of a season by the calendar -> number of that one in the levels, its middle time [s]
     """
 
@@ -67,6 +68,7 @@ class Fleet:
     share: float
     length: int
     at: np.ndarray
+    curves: Curves
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
@@ -153,7 +155,7 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0, length, begun.mean)
+        return Fleet(own, found, empty, begun, 0.0, length, begun.mean, Curves({}, 0.0))
     past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
@@ -163,10 +165,12 @@ def fleet(
     own.learns = True
     at, passed, said = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
-    levels = estimate(said.times(share), season, machine_of, begun)
+    bent = curves(own, past)
+    told = said.bent(at[machine], *bent.at(at[machine])).times(share)
+    levels = estimate(told, season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, seasons)
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +182,7 @@ class Question:
         season: number of the season of each window
         span: number of the span of time of each window, those of a season one after the other
         told: what each window says of moves of the knobs from the machine's values, in proportion to effects
-        curves: of the knobs
+        curves: of moves from the machine's values
     """
 
     windows: Windows
@@ -201,7 +205,7 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
-        suit(own, data, np.tile(levels.mean[0], (len(season), 1)))
+        suit(own, data, np.zeros((len(season), len(own.knobs))))
     span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
@@ -211,9 +215,10 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     if log_likelihood(nearer[1]) - log_likelihood(passed) > data.counts.sum():
         z, passed, said = nearer  # a change is so large that it matters where the filter is
         z = z[span]
-    bent = curves(own, data, levels.mean[0])
-    told = said.bent(z, *bent.at(z - levels.mean[0])).times(found.share or independent(passed))
-    return Question(data, season, span, told, bent)
+    bent = found.curves if found.share else curves(own, data)
+    told = said.bent(z, *bent.at(z)).times(found.share or independent(passed))
+    moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
+    return Question(data, season, span, moves, bent.about(levels.mean[0]))
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
