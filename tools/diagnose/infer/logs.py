@@ -155,7 +155,7 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0, length, begun.mean, Curves({}, 0.0))
+        return Fleet(own, found, empty, begun, 0.0, length, begun.mean, Curves({}, 0 * sd))
     past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])

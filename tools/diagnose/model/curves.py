@@ -37,7 +37,7 @@ class Curves:
     """
 
     of: Mapping[int, PchipInterpolator]
-    base: np.ndarray | float = 0.0
+    base: np.ndarray
 
     def at(self, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What moves (n, k) do, and the slopes of that (n, k)."""
@@ -87,4 +87,4 @@ def curves(own: Filter, data: Windows) -> Curves:
             x, y = (np.insert(values, middle, 0.0) for values in (SEEN, along))
             rising = np.cumsum([0.0, *np.maximum(np.diff(y), LEAST * np.diff(x))])
             found[j] = PchipInterpolator(x, rising - rising[middle])
-    return Curves(found)
+    return Curves(found, np.zeros(z.shape[-1]))
