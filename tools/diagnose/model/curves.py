@@ -21,6 +21,8 @@ SEEN = np.array([-4.0, -2.0, -1.0, -0.1, 0.1, 1.0, 2.0, 4.0])
 WINDOWS = 4
 #: Least slope of a curve: an effect that ends does not turn round.
 LEAST = 0.02
+#: Slope between the moves next to the smallest over that of these, at most: what switches jumps, and has no curve.
+SMOOTH = 2.0
 #: Points of a curve at which it is read backwards.
 FINE = 401
 #: Least square of what a small move does, in standard deviations.
@@ -83,7 +85,8 @@ def curves(own: Filter, data: Windows) -> Curves:
         effects = sound.error - errors
         by = (effects[middle] - effects[middle - 1]) / (SEEN[middle] - SEEN[middle - 1]) / sound.variance
         along = np.nansum(effects * by, axis=(1, 2, 3)) / max(float(np.nansum(by * by * sound.variance)), TINY)
-        if np.isfinite(along).all():
+        wide = (along[middle + 1] - along[middle - 2]) / (SEEN[middle + 1] - SEEN[middle - 2])
+        if 1 / SMOOTH < wide < SMOOTH:
             x, y = (np.insert(values, middle, 0.0) for values in (SEEN, along))
             rising = np.cumsum([0.0, *np.maximum(np.diff(y), LEAST * np.diff(x))])
             found[j] = PchipInterpolator(x, rising - rising[middle])
