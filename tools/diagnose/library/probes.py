@@ -1,4 +1,4 @@
-"""Probes that stand where they should not, are exchanged, or lag behind."""
+"""Probes that stand where they should not, or are exchanged."""
 
 from __future__ import annotations
 
@@ -94,16 +94,3 @@ def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
             (Form(f"{a.name} with {b.name}", 1 / len(pairs), shown=exchanged(a.name, b.name)) for a, b in pairs),
             id=f"sensor.{own[0].kind}.swapped",
         )
-
-
-def lag(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
-    """Thermometers of one kind that follow late; only logs know how fast what they read changes."""
-    read = [s for s in own if s.kind in THERMOMETERS and s.role == "read"]
-    if not read or "logs" not in at.ranges.known:
-        return
-
-    def late(sensor: Sensor) -> Form:
-        return wrong(sensor, "time", lambda theta, row, value: -row.rates.get(sensor.name, 0.0))
-
-    forms = [replace(late(s), name=one_of(s, read), weight=1 / len(read)) for s in read]
-    yield entry("sensor.*.lag", at).with_forms(forms, id=f"sensor.{own[0].kind}.lag")

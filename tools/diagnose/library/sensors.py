@@ -15,7 +15,7 @@ from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
 from .entries import TABLE, entry
 from .forms import COURSES, FROM_THEN, LEAST_SPAN, PLACE, Context, Course, Regime, since
-from .probes import heated, lag, one_of, position, swapped, wrong
+from .probes import heated, one_of, position, swapped, wrong
 
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025
@@ -91,7 +91,6 @@ def causes(at: Context) -> Iterator[Cause]:
         if name == "ambient":
             yield from heated(at, own)
         yield from swapped(at, own)
-        yield from lag(at, own)
 
 
 class _Instruments:
