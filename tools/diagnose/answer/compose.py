@@ -13,7 +13,7 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
 from .decide import Chance, Decision
-from .design import Effects, extend_design, find_alike, rank
+from .design import Effects, find_alike, rank, simulate_design
 from .experiments import list_experiments
 
 #: Hypotheses that are listed.
@@ -139,5 +139,6 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = extend_design(found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    made = simulate_design(found.problem, found.null.look, found.null.noise, found.first, causes, tried)
     return tuple(rank(made, weights)[:TRIED])

@@ -149,14 +149,7 @@ def spread(n: int, d: int) -> np.ndarray:
 
 
 def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
-    """What every form would explain beside a fitted hypothesis.
-
-    Args:
-        problem: data and model
-        near: where it was fitted
-        linear: whitening by all that is uncertain there, and the residual in it
-        forms: of causes
-    """
+    """What every form would explain near a fitted hypothesis: in a whitening by all that is uncertain there."""
     candidates, owner = samples(tuple(forms), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0

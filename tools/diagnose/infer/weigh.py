@@ -89,14 +89,7 @@ def _silent(stage: str, share: float) -> None:
 def weigh(
     problem: Problem, formulas: Sequence[Formula], options: Options = USUAL, progress: Progress = _silent
 ) -> Found:
-    """All hypotheses that count, weighed.
-
-    Args:
-        problem: data and model
-        formulas: all forms of all causes
-        options: how
-        progress: told of each stage and the share done
-    """
+    """All hypotheses that count, weighed; progress is told of each stage and the share done."""
     return Weighing(problem, formulas, options, progress).run()
 
 

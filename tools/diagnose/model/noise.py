@@ -288,10 +288,9 @@ def start_error(o: Measured) -> np.ndarray:
 
 
 def fading(o: Measured, linear: np.ndarray) -> np.ndarray:
-    """Features (m, k) of a remainder that fades along courses, first dwells and later ones apart.
+    """Features (m, k), by those of the conditions (n, c), of a remainder that fades along courses.
 
-    Args:
-        linear: features of the conditions (n, c)
+    First dwells and later ones are apart.
     """
     later = o.half[o.row] > 0
     left = [(1 - shares(o)) ** power * side for power in FADING for side in (later, ~later)]
