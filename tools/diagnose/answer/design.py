@@ -75,10 +75,8 @@ def find_alike(effects: Effects, cause: str, size: float, like: Mapping[str, str
     """The set that a design cannot tell from a cause, declared classes included; None where it stands alone.
 
     Args:
-        effects: of all causes
-        cause: its id
+        effects: of all causes, `like` their classes and why
         size: in half widths of its prior
-        like: cause -> class and why
     """
     if cause not in effects.places:
         return None

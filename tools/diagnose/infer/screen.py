@@ -157,13 +157,7 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
-    """Log Bayes factors of any cause against none on data of the null (draws,).
-
-    Args:
-        found: all causes beside none
-        weights: log prior weight of each candidate, all together 1
-        seed: of the draws
-    """
+    """Log Bayes factors of any cause against none on data of the null (draws,), by log prior weights of candidates."""
     e = np.random.default_rng(seed).standard_normal((len(found.white), DRAWS))
     logs = log_bayes_factors((found.white.T @ e).T, (found.white**2).sum(axis=0), *priors(found.candidates))
     return np.asarray(np.logaddexp.reduce(logs + weights, axis=1))

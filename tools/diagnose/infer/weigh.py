@@ -79,15 +79,12 @@ class Options:
     critical: float | None = None
 
 
-USUAL = Options()
-
-
 def _silent(stage: str, share: float) -> None:
     """No progress."""
 
 
 def weigh(
-    problem: Problem, formulas: Sequence[Formula], options: Options = USUAL, progress: Progress = _silent
+    problem: Problem, formulas: Sequence[Formula], options: Options = Options(), progress: Progress = _silent
 ) -> Found:
     """All hypotheses that count, weighed; progress is told of each stage and the share done."""
     return Weighing(problem, formulas, options, progress).run()
