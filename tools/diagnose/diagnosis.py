@@ -39,11 +39,7 @@ BLIND = 0.01
 
 
 def diagnose(inputs: Inputs, progress: Progress) -> Findings:
-    """What the data of a request say.
-
-    Args:
-        inputs: what its files hold
-        progress: called with (stage, fraction done)
+    """What the data of a request say; progress is called with (stage, fraction done).
 
     Raises:
         GearheatError: rig, card and data do not go together
@@ -134,11 +130,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
 
 
 def plan(inputs: PlanInputs, progress: Progress) -> Plan:
-    """What a campaign will tell, by exact first-order effects at the rig as in its file.
-
-    Args:
-        inputs: what the files of a request hold
-        progress: called with (stage, fraction done)
+    """What a campaign will tell, by exact first-order effects at the rig as in its file; progress as of `diagnose`.
 
     Raises:
         GearheatError: rig, card and points do not go together

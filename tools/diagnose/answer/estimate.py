@@ -206,7 +206,6 @@ def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np
     """Weights of the readings (m,) in the mean loss torque [N.m] and in the mean loss [W]; None without a torque.
 
     Args:
-        o: the data
         ratios: speed of each shaft end over that of the one at which the loss is stated
     """
     torque, power = np.zeros(o.m), np.zeros(o.m)

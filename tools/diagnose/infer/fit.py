@@ -148,9 +148,7 @@ def fitted(
     """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 
     Args:
-        problem: data and model
-        acting: causes where the fit begins
-        z: nuisances where it begins
+        acting, z: causes and nuisances where the fit begins
         scales: logarithms of the scales of its loose terms where it begins
         steps: at most
 

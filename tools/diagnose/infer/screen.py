@@ -104,7 +104,6 @@ def samples(formulas: tuple[Formula, ...], orders: tuple[float, ...]) -> tuple[t
     """Candidates spread over the prior of each formula's shapes, the middle first, and their owners.
 
     Args:
-        formulas: forms
         orders: places in the running order between two tests, each of which a change may have
     """
     found, owner = [], []
