@@ -108,12 +108,7 @@ class Inputs:
 
 
 def read(request: Request, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()) -> Inputs:
-    """Read and check all files but logs and libraries.
-
-    Args:
-        request: files and options
-        written: option -> file that will be written
-        problems: that are known already
+    """Read and check all files but logs and libraries; `written` is option -> file, `problems` are known already.
 
     Raises:
         DataError: all problems of files and options at once

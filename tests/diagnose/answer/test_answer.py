@@ -11,7 +11,7 @@ import pytest
 from gearheat.model.errors import SolveError
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
-from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_alike, rank
+from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
@@ -241,10 +241,15 @@ def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Set
         np.testing.assert_allclose(term.matrix[: problem.m, : problem.m], alone[term.name], atol=1e-12)
 
 
+def designed(found: Found, setting: Setting) -> Design:
+    """The campaign of a search with all experiments behind it."""
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    return simulate_design(found.problem, found.null.look, found.null.noise, found.first, CAUSES, tried)
+
+
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
-    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
-    made = extend_design(found, CAUSES, tried)
+    made = designed(found, setting)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
     for e in made.experiments:
@@ -286,7 +291,7 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
     assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
     assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
     assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
-    made = extend_design(wrong[1], CAUSES, list_experiments(campaign, setting.nominal.value))
+    made = designed(wrong[1], setting)
     weights = dict.fromkeys(CAUSES, 0.25)
     assert all(r.separation_after >= r.separation_before + 0.1 for r in rank(made, weights))
 

@@ -199,15 +199,14 @@ def test_classes_that_count_as_one_answer(case):
 
 
 def test_what_is_not_known_of_the_rows_is_left_out(without):
-    everything = without("planetary", "order", "dwell", "mounting", "humidity", "logs")
+    everything = without("planetary", "order", "dwell", "mounting", "humidity")
     for known, ids in {
         "humidity": ["cooling.humidity"],
         "dwell": ["procedure.not_stationary"],
         "mounting": ["sensor.torque.mounting"],
-        "logs": ["heat.parked", "sensor.wall_temp.lag"],
         "order": ["procedure.order", "sensor.torque.drift", "sensor.oil_temp.since"],
     }.items():
-        others = {"order", "dwell", "mounting", "humidity", "logs"} - {known}
+        others = {"order", "dwell", "mounting", "humidity"} - {known}
         assert set(ids) <= set(everything) and not set(ids) & set(without("planetary", *others))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.library.cause import Row, as_array
-from gearheat.tools.diagnose.library.probes import BODY
+from gearheat.tools.diagnose.library.sensors import BODY
 
 ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
 DIRECTION = np.array([1.0, -1.0] * 3)

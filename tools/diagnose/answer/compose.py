@@ -13,7 +13,7 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
 from .decide import Chance, Decision
-from .design import Effects, extend_design, find_alike, rank
+from .design import Effects, find_alike, rank, simulate_design
 from .experiments import list_experiments
 
 #: Hypotheses that are listed.
@@ -31,26 +31,17 @@ TRIED = 6
 def common(made: Setting, found: Found, decision: Decision) -> dict[str, Any]:
     """What the findings on readings and on logs have alike: the verdict, and what it follows from."""
     told = sets(made.causes, found, decision) if decision.verdict != "consistent" else ()
+    # the most probable ones, nothing always among them
+    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
     return {
         "verdict": decision.verdict,
-        "hypotheses": hypotheses(decision),
-        "answers": answers(decision),
+        "hypotheses": tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed),
+        "answers": tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers),
         "causes": causes(made, found, decision),
         "remainder": remainder(found, decision),
         "sets": told,
         "confusable": tuple(s.causes for s in told),
     }
-
-
-def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
-    """The most probable ones, nothing always among them."""
-    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
-    return tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed)
-
-
-def answers(decision: Decision) -> tuple[findings.Answer, ...]:
-    """What the verdict names."""
-    return tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers)
 
 
 def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
@@ -139,5 +130,6 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = extend_design(found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    made = simulate_design(found.problem, found.null.look, found.null.noise, found.first, causes, tried)
     return tuple(rank(made, weights)[:TRIED])

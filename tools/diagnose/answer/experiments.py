@@ -206,12 +206,7 @@ def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
 
 
 def planned_campaign(scenario: Scenario, card: Card, points: Campaign | None) -> Campaign:
-    """Conditions with the readings of the rig as in its file.
-
-    Args:
-        scenario: the rig
-        card: sensors and protocol
-        points: conditions; a grid of 4 x 4 points without them
+    """Conditions, a grid of 4 x 4 points where none are given, with the readings of the rig as in its file.
 
     Raises:
         DataError: the rig has no sensor, or cannot be run at any point

@@ -67,12 +67,7 @@ def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[st
 def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[Picture, ...]:
     """For each cause of a hypothesis what is left without and with it, in the channel that shows it best.
 
-    It is drawn against what the cause acts on; against the running order where that is not measured.
-
-    Args:
-        found: the search
-        h: the hypothesis
-        quantities: what readings can be drawn against
+    It is drawn against what the cause acts on; against the running order where this is none of the quantities.
     """
     problem, fit, o = found.problem, h.fit, found.problem.data
     sd = np.sqrt(np.diag(fit.noise.covariance))[problem.own]

@@ -91,7 +91,6 @@ class Row:
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
         dwell: time the row was held as stated [s]
-        rates: sensor -> how fast what it reads changes [1/s], in logs
     """
 
     base: Values
@@ -102,7 +101,6 @@ class Row:
     humidity: Num = 0.5
     second: Num = 0.0
     dwell: Num = 3600.0
-    rates: Values = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -178,7 +176,7 @@ class Ranges:
             "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
-        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs", and
+        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", and
             "still: NAME" of sensors that may hang
         powers: part -> typical loss, or heat flow rate, of the nominal [W]
     """

@@ -78,11 +78,7 @@ class Extended:
         return {path: float(value) for path, value in own if path in known}
 
     def text(self, uncertain: Mapping[str, Mapping[str, float]]) -> str:
-        """The text of a rig file that every command reads.
-
-        Args:
-            uncertain: reason -> path -> what its value changes by at one standard deviation
-        """
+        """The text of a rig file, with reason -> path -> what its value changes by at one standard deviation."""
         told = replace(self.scenario, joint_uncertainties=uncertain)
         return "\n".join(f"# {line}" for line in self.head) + "\n" + rig_text(told)
 
