@@ -14,15 +14,15 @@ from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
-from ..model.curves import Curves, curves
+from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
-from ..model.logs import Filter, log_likelihood
+from ..model.logs import Filter, Quadratics, log_likelihood
 from ..model.plant import Plant
 from ..model.windows import WINDOW, Windows, windows
-from .levels import Levels, Quadratics, estimate, first_levels
+from .levels import Levels, estimate, first_levels
 from .problem import Look, Problem
-from .walk import PASSES, independent, suit, walk
+from .walk import PASSES, curves, independent, suit, walk
 
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from ..model.logs import Filter, Passed, log_likelihood
+from ..model.curves import FLATTEST, SEEN, Curves
+from ..model.logs import Filter, Passed, Quadratics, log_likelihood
 from ..model.windows import Windows
-from .levels import Quadratics
 
 #: Passes over logs at most.
 PASSES = 30
@@ -34,6 +35,12 @@ TIMED = 24
 #: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
 STILL = 0.03
 STEPPING = 0.5
+#: Windows by which it is seen how effects curve, at most.
+WINDOWS = 4
+#: The slope between larger moves is at most so many times that between the smallest; what switches has no curve.
+SMOOTH = 2.0
+#: Least square of what a small move does, in standard deviations.
+TINY = 1e-12
 #: Correlations of errors are summed over so many samples at most, and down to so much.
 MEMORY = 36
 #: What lasts longer is a matter of windows and years.
@@ -147,3 +154,30 @@ def independent(passed: Passed) -> float:
         first = next((k for k, rho in enumerate(lags) if rho < CORRELATED), len(lags))
         shares.append(1 / (1 + 2 * sum(lags[:first])))
     return float(np.mean(shares))
+
+
+def curves(own: Filter, data: Windows) -> Curves:
+    """Curves of all factors about the rig file.
+
+    Args:
+        own: the filter
+        data: windows
+    """
+    some = np.linspace(0, len(data.read) - 1, min(len(data.read), WINDOWS)).astype(int)
+    factors = [j for j, knob in enumerate(own.knobs) if knob.scaled]
+    z = np.zeros((len(factors), len(SEEN), len(some), len(own.knobs)))
+    for k, j in enumerate(factors):
+        z[k, :, :, j] += SEEN[:, None]
+    tried = own.run(data.some(np.tile(some, len(factors) * len(SEEN))), z.reshape(-1, z.shape[-1]), slopes=False)
+    sound = own.run(data.some(some), np.zeros((len(some), z.shape[-1])), slopes=False)
+    found, middle = {}, len(SEEN) // 2
+    for j, errors in zip(factors, tried.error.reshape(*z.shape[:-1], *sound.error.shape[1:]), strict=True):
+        effects = sound.error - errors
+        by = (effects[middle] - effects[middle - 1]) / (SEEN[middle] - SEEN[middle - 1]) / sound.variance
+        along = np.nansum(effects * by, axis=(1, 2, 3)) / max(float(np.nansum(by * by * sound.variance)), TINY)
+        wide = (along[middle + 1] - along[middle - 2]) / (SEEN[middle + 1] - SEEN[middle - 2])
+        if 1 / SMOOTH < wide < SMOOTH:
+            x, y = (np.insert(values, middle, 0.0) for values in (SEEN, along))
+            rising = np.cumsum([0.0, *np.maximum(np.diff(y), FLATTEST * np.diff(x))])
+            found[j] = PchipInterpolator(x, rising - rising[middle])
+    return Curves(found, np.zeros(z.shape[-1]))
