@@ -179,5 +179,5 @@ def curves(own: Filter, data: Windows) -> Curves:
         if 1 / SMOOTH < wide < SMOOTH:
             x, y = (np.insert(values, middle, 0.0) for values in (SEEN, along))
             rising = np.cumsum([0.0, *np.maximum(np.diff(y), FLATTEST * np.diff(x))])
-            found[j] = PchipInterpolator(x, rising - rising[middle])
+            found[j] = PchipInterpolator(x, np.arcsinh(rising - rising[middle]))
     return Curves(found, np.zeros(z.shape[-1]))

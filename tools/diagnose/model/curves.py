@@ -25,7 +25,7 @@ class Curves:
     """What moves of knobs do, as numbers to which their effects are in proportion.
 
     Args:
-        of: number of a knob -> its curve about the rig file
+        of: number of a knob -> its curve about the rig file, as an area hyperbolic sine, which is nearly straight
         base: knobs from which moves are told (k,)
     """
 
@@ -41,15 +41,15 @@ class Curves:
         found, slopes = z.copy(), np.ones_like(z)
         for j, curve in self.of.items():
             inside = z[:, j].clip(SEEN[0], SEEN[-1])
-            slopes[:, j] = np.maximum(curve(inside, 1), FLATTEST)
-            found[:, j] = curve(inside) + slopes[:, j] * (z[:, j] - inside)
+            slopes[:, j] = np.maximum(np.cosh(curve(inside)) * curve(inside, 1), FLATTEST)
+            found[:, j] = np.sinh(curve(inside)) + slopes[:, j] * (z[:, j] - inside)
         return found, slopes
 
     def back(self, found: np.ndarray) -> np.ndarray:
         """Knobs about the rig file (n, k) that do something (n, k); none is beyond what was seen."""
         z, fine = found.copy(), np.linspace(SEEN[0], SEEN[-1], FINE)
         for j, curve in self.of.items():
-            z[:, j] = np.interp(found[:, j], curve(fine), fine)
+            z[:, j] = np.interp(np.arcsinh(found[:, j]), curve(fine), fine)
         return z
 
     def about(self, mean: np.ndarray) -> Curves:
