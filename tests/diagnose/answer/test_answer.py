@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.model.errors import SolveError
+from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
 from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
@@ -157,6 +158,20 @@ def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     changed = estimate.impacts(found.problem, decision.leader, wrong[0].nominal.ratios)
     oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
     assert changed[f"{oil}_K"].value == pytest.approx(size.value, rel=0.2)
+
+
+def test_an_instrument_has_its_own_size_and_what_it_seems_to_lose_is_apparent(wrong, monkeypatch) -> None:
+    found = wrong[1]
+    decision = decide(found)
+    one = decision.leader.fit.look.acting[0].formula
+    monkeypatch.setattr(estimate, "loss_means", lambda o, ratios: (np.ones(o.m), np.zeros(0)))
+    known = estimate.estimate_cause(found, TRUE, decision.members[TRUE])[0]
+    assert estimate.impacts(found.problem, decision.leader, {})["loss_Nm"].what == "loss"
+    monkeypatch.setattr(one, "form", replace(one.form, scale=0.2))
+    monkeypatch.setattr(Campaign, "sensor", lambda o, name: SimpleNamespace(kind="torque"))
+    told = estimate.estimate_cause(found, TRUE, decision.members[TRUE])[0]
+    assert (told.value, *told.ci95) == pytest.approx([0.2 * v for v in (known.value, *known.ci95)], rel=1e-5)
+    assert estimate.impacts(found.problem, decision.leader, {})["loss_Nm"].what == "apparent loss"
 
 
 def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Found]) -> None:
