@@ -16,11 +16,12 @@ from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, r
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
-from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, scatters
+from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, gross_readings, scatters
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
+from gearheat.tools.diagnose.report import phrases
 from gearheat.tools.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
@@ -91,6 +92,17 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     assert decide(found).verdict == "consistent"
     ((_, size_sd),) = distances(found.problem, found.null)
     assert size_sd == pytest.approx(20, rel=0.3)
+
+
+def test_a_wrong_speed_is_among_the_given_readings_of_its_row_that_explain_it(clean: tuple[Setting, Found]) -> None:
+    sound = clean[1].problem
+    campaign = sound.data.campaign
+    speed, row = next(s.name for s in sound.data.given if s.kind == "speed"), 5
+    values = {**campaign.values, speed: campaign.values[speed] * np.where(np.arange(campaign.n) == row, 1.25, 1.0)}
+    found = weigh(Problem([sound.data.another(replace(campaign, values=values))], sound.day_sd), clean[1].formulas)
+    (one,) = gross_readings(found, decide(found).leader)
+    assert one.row == row + 1 and speed in (one.channel, *one.instead)
+    assert not one.instead or f"A wrong {one.instead[0]}" in phrases.gross(one)
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
