@@ -21,7 +21,7 @@ from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
-from gearheat.tools.diagnose.report import phrases
+from gearheat.tools.diagnose.report import extension, phrases
 from gearheat.tools.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
@@ -382,3 +382,9 @@ def test_calibration_goes_no_further_than_what_is_possible(clean: tuple[Setting,
     base = {path: data.plant.p[data.plant.place[path]] for path in nuisance.paths}
     low, high = data.limits[:, k]
     assert low == -6.0 and max(base.values()) * np.exp(nuisance.sd * high) == pytest.approx(1.0)
+    z = np.zeros(len(names))
+    z[k], z[names.index("convection")] = high, -4.0  # less area that radiates no less for it
+    told = extension.values(clean[1], z)
+    assert {path: told[path] for path in base} == dict.fromkeys(base, pytest.approx(1.0))
+    shown, less = (data.at(z - np.eye(len(z))[k] * d, []) for d in (0.0, 1e-3))
+    assert less.shown == pytest.approx(shown.shown, abs=1e-9) and not shown.by[:, k].any(), "it no longer follows"
