@@ -210,7 +210,8 @@ class _Reader:
         rows = np.lexsort((np.arange(cells.n), position, order))
         first = np.append(True, np.diff(position[rows]) != 0)
         test = np.cumsum(first) - 1
-        self.sensors, values, direction = turned(self.scenario, self.sensors, values, self._direction(cells))
+        said = {name for name, table in self.card.sensors.items() if table.signs is not None}
+        self.sensors, values, direction = turned(self.scenario, self.sensors, values, self._direction(cells), said)
         direction = direction[rows]
         starts = rows[first]
         points = cells.numbers("point")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -78,7 +78,11 @@ def _both(column: np.ndarray) -> bool:
 
 
 def turned(
-    scenario: Scenario, sensors: Sequence[Sensor], values: dict[str, np.ndarray], stated: np.ndarray
+    scenario: Scenario,
+    sensors: Sequence[Sensor],
+    values: dict[str, np.ndarray],
+    stated: np.ndarray,
+    signed_by_card: Collection[str] = (),
 ) -> tuple[tuple[Sensor, ...], dict[str, np.ndarray], np.ndarray]:
     """Sensors and values with the signs that columns have in both directions, and the direction of each row (n,).
 
@@ -90,6 +94,7 @@ def turned(
         sensors: of the table
         values: sensor -> column (n,) in SI, loads without a sign as magnitudes
         stated: direction of each row, +1, -1, or 0 where none is stated (n,)
+        signed_by_card: sensors, by name or column, whose signs the card says
     """
     nominal = Nominal(drive_by(scenario, sensors))
     usual = {s.name: -1.0 if nominal.value(s.reads) < 0 else 1.0 for s in sensors if s.kind in ("speed", "torque")}
@@ -116,7 +121,8 @@ def turned(
             direction = direction * rotation
     if _both(direction) and not (loads and signs.keys() & {s.name for s in loads}):
         read = [s for s in sensors if s.role == "read" and s.kind == "torque" and s.signs == (1.0, 1.0)]
-        whole = [s.name for s in read if not _both(values[s.name]) and (signed is None or (direction == signed).all())]
+        read = [s for s in read if not _both(values[s.name]) and {s.name, s.column}.isdisjoint(signed_by_card)]
+        whole = [s.name for s in read if signed is None or (direction == signed).all()]
         signs |= {name: (usual[name], -usual[name]) for name in whole}
         values = values | {name: np.abs(values[name]) for name in whole}
     return tuple(replace(s, signs=signs.get(s.name, s.signs)) for s in sensors), values, direction
