@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -24,6 +25,8 @@ LISTED = 0.005
 JUDGED = 4
 #: The least weight of one.
 LEAST = 0.02
+#: Of errors of several instruments of a kind.
+PROPORTION = ", of the one that reads most, others in proportion"
 #: Experiments that are listed.
 TRIED = 6
 
@@ -46,24 +49,16 @@ def common(made: Setting, found: Found, decision: Decision) -> dict[str, Any]:
 
 def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
     """All causes, most probable first."""
-    smallest = estimate.find_detectable(found)
-    told = []
-    for cause in (*made.causes, None):
-        id = cause.id if cause else findings.UNEXPLAINED
-        chance = decision.marginal.get(id, Chance(0.0, 0.0))
-        known: dict[str, Any] = {}
-        if cause is not None:
-            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
-            sizes = [size for size in (smallest.get(id), cause.size.sd) if size is not None]
-            unit, (*smallest_of, usual) = estimate.convert(cause.size, sizes)
-            known |= {
-                "usual": usual,
-                "unit": unit,
-                "meaning": cause.size.doc,
-                "detectable": next(iter(smallest_of), None),
-            }
-            known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
-        told.append(findings.Cause(id=id, **asdict(chance), **known))
+    smallest, chances = estimate.find_detectable(found), defaultdict(lambda: Chance(0.0, 0.0), decision.marginal)
+    told = [findings.Cause(id=findings.UNEXPLAINED, **asdict(chances[findings.UNEXPLAINED]))]
+    for cause in made.causes:
+        known: dict[str, Any] = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
+        known["meaning"] = cause.size.doc + (PROPORTION if any(f.scale != 1 for f in cause.forms) else "")
+        known["unit"], (known["usual"],) = estimate.convert(cause.size, [cause.size.sd])
+        if cause.id in smallest:
+            _, (known["detectable"],) = estimate.convert(cause.size, [smallest[cause.id]])
+        known |= _sized(made, cause.id, found, decision) if chances[cause.id].probability > LISTED else {}
+        told.append(findings.Cause(id=cause.id, **asdict(chances[cause.id]), **known))
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
 
 

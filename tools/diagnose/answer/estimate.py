@@ -69,13 +69,13 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
     one = best.fit.look.acting[best.fit.causes.index(cause)]
     s = one.formula.cause.size
-    size = _told(s, [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)])
-    return (size, *_shapes(found.problem, best, one))
+    ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
+    return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best, one))
 
 
-def _told(of: Shape | Size, ends: Sequence[float]) -> Estimate:
-    """A size or a shape with its interval: low end, value, high end."""
-    unit, (low, value, high) = convert(of, ends)
+def _told(of: Shape | Size, ends: Sequence[float], scale: float = 1.0) -> Estimate:
+    """A size or a shape with its interval: low end, value, high end, of what has it times a scale."""
+    unit, (low, value, high) = convert(of, [scale * end for end in ends])
     bound = at_bound(ends[1], of.low, of.high)
     return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)
 
@@ -122,8 +122,9 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     whites = [White.of(V + size**2 * one) for size in SPREADS]
     logs = [white.log_density(white(r)) for white in whites]
     share = np.cumsum(np.exp(np.array(logs) - np.logaddexp.reduce(logs)))
-    of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    told = _told(of, [of.sd * float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)])
+    mine = next(f for f in found.formulas if (f.cause.id, f.form.name) == (cause, extra.form))
+    of, ends = mine.cause.size, [float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)]
+    told = _told(of, [of.sd * end for end in ends], mine.form.scale)
     doc = of.doc if "standard deviation" in of.doc else f"standard deviation of: {of.doc}"
     return (told.model_copy(update={"doc": doc, "at_bound": ""}),)
 
@@ -196,9 +197,11 @@ def impacts(
         if (mine := o.kind == i).any():
             weights = channels.difference(s, 1.0) * mine / mine.sum()
             add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
+    wrong = {o.campaign.sensor(name).kind for a in moved for name in (*a.formula.read, *a.formula.given)}
+    loss = "loss" if wrong.isdisjoint(("torque", "speed")) else "apparent loss"
     for (name, unit), weights in zip(LOSS.items(), loss_means(o, ratios) or (), strict=False):
         if len(weights):
-            add(name, weights, unit, "loss")
+            add(name, weights, unit, loss)
     return told
 
 

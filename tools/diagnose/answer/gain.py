@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -52,7 +53,7 @@ def measure_gains(found: Found, asked: Options, progress: Callable[[float], None
     """
     problem, options = found.problem, Options(seed=asked.seed, most=asked.most, critical=found.critical)
     plans = schemes(problem.data.campaign)
-    total, done, told = sum(len(folds) for folds in plans.values()), 0, []
+    total, done, told = sum(len(folds) for folds in plans.values()), 0, list[Gain]()
     for scheme, folds in plans.items():
         errors = []
         for rows in folds:
@@ -61,10 +62,8 @@ def measure_gains(found: Found, asked: Options, progress: Callable[[float], None
                 errors.append(foresee(found, held, options))
             done += 1
             progress(done / total)
-        if errors:
-            told += [
-                g for i in range(len(problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, asked.seed))
-            ]
+        sensors = range(len(problem.data.read) if errors else 0)
+        told += filter(None, (_gain(found, scheme, folds, errors, i, asked.seed) for i in sensors))
     oil = [s.name for s in problem.data.read if s.kind == "oil_temp"]
     return sorted(told, key=lambda g: g.channel not in oil)
 
@@ -75,36 +74,28 @@ def _gain(
     """One sensor's errors over all folds of a scheme."""
     o = found.problem.data
     held = np.concatenate([e.held for e in errors])
-    sides = ("before", "after", "leading")
-    errors_by = {side: np.concatenate([getattr(e, side) for e in errors], axis=1) for side in sides}
+    errors_by = {side: np.concatenate([e.by[side] for e in errors], axis=1) for side in errors[0].by}
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
     entries = np.setdiff1d(np.flatnonzero(o.kind == sensor), found.problem.entries_aside)
-    rivals, s = {}, o.read[sensor]
-    rows = o.row[entries]
+    rivals, s, rows = {}, o.read[sensor], o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
         known = [e for e in left if e is not None]
         if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
             rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
-    both = {
-        side: Gain.Both.model_validate(
-            {key: channels.difference(s, rms(line[mine])) for key, line in zip(("without", "with"), lines, strict=True)}
-        )
-        for side, lines in errors_by.items()
-    }
+    told = {side: [channels.difference(s, rms(line[mine])) for line in lines] for side, lines in errors_by.items()}
+    both: dict[str, Any] = {side: dict(zip(("without", "with"), values, strict=True)) for side, values in told.items()}
     return Gain(
         scheme=scheme,
         channel=s.name,
         unit=channels.unit_of_difference(s),
         n=int(mine.sum()),
-        rmse_before=both["before"].without,
-        rmse_after=both["after"].without,
-        before=both["before"],
-        after=both["after"],
-        leading=both["leading"],
+        rmse_before=told["before"][0],
+        rmse_after=told["after"][0],
+        **both,
         ratio_ci90=_bootstrap(errors_by["before"][0, mine], errors_by["after"][0, mine], test, seed),
         noise_floor=channels.difference(s, noise_floor(found, sensor)),
         rivals=rivals,
@@ -119,16 +110,12 @@ class Foreseen:
 
     Args:
         held: entries that are left out (k,)
-        before: as calibrated, without a cause
-        after: all hypotheses averaged
-        leading: by the likeliest one
+        by: errors "before", as calibrated without a cause, "after", all hypotheses averaged, and by the "leading" one
         causes: of that one
     """
 
     held: np.ndarray
-    before: np.ndarray
-    after: np.ndarray
-    leading: np.ndarray
+    by: Mapping[str, np.ndarray]
     causes: tuple[str, ...]
 
 
@@ -152,7 +139,7 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     counted = [(h, w) for h, w in zip(found.hypotheses, weights, strict=True) if w or h is leader]  # the leader first
     errors = np.array([left.by(h.fit, h.extras) for h, _ in counted])
     after = np.average(errors, axis=0, weights=[w for _, w in counted])
-    return Foreseen(held, left.by(found.null, ()), after, errors[0], leader.causes)
+    return Foreseen(held, {"before": left.by(found.null, ()), "after": after, "leading": errors[0]}, leader.causes)
 
 
 class _Left:

@@ -120,6 +120,7 @@ class Form:
             sizes of every test, of every mounting, or of the steps from each test to the next
         regime: quantity and side it is limited to ("speed above"), with the shape that holds the threshold; for words
         low: its size cannot be below this, whatever the cause's can
+        scale: what is told of the cause's size: of an instrument its own error
     """
 
     name: str = ""
@@ -134,6 +135,7 @@ class Form:
     spread: str = ""
     regime: Mapping[str, str] = field(default_factory=dict)
     low: float = -np.inf
+    scale: float = 1.0
 
 
 @dataclass(frozen=True)

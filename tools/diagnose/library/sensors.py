@@ -75,15 +75,13 @@ class Mode:
     turns: bool = False
 
 
-def turned(mode: Mode) -> Mode:
-    """The same error in the signed value of what a column shows as a magnitude."""
+def ways(mode: Mode, sensor: Sensor) -> tuple[Mode, ...]:
+    """The mode, and of a column of magnitudes the same error in the signed value, which turns with the direction."""
+    if not mode.turns or sensor.signs[0] == sensor.signs[1]:
+        return (mode,)
+    signed = replace(mode, factor=lambda theta, row, value: row.direction * mode.factor(theta, row, value))
     name = ", ".join(filter(None, (mode.name, "opposite signs")))
-    return replace(
-        mode,
-        name=name,
-        weight=TURNED * mode.weight,
-        factor=lambda theta, row, value: row.direction * mode.factor(theta, row, value),
-    )
+    return replace(mode, weight=(1 - TURNED) * mode.weight), replace(signed, name=name, weight=TURNED * mode.weight)
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -141,27 +139,20 @@ class _Instruments:
         offset, kind = max(s.offset_sd / max(self.scale[s.name], 0.1) for s in self.own), self.kind
         sd = share * max(kind.tolerance * offset, kind.share * self.typical, kind.least)
         high = max(kind.most * self.typical, 8 * sd)
-        larger = "" if len(set(self.scale.values())) == 1 else ", of the one that reads most, others in proportion"
-        return Size("error", kind.unit, doc + larger, sd, -high if signed else 0.0, high)
+        return Size("error", kind.unit, doc, sd, -high if signed else 0.0, high)
 
     def forms(self, modes: Sequence[Mode], size: str = "error") -> tuple[Form, ...]:
         """Each mode of each instrument of the kind; instruments share the weight."""
-        found = []
-        for sensor in self.own:
-            for mode in modes:
-                if mode.turns and sensor.signs[0] != sensor.signs[1]:
-                    found += [self._form(sensor, replace(mode, weight=(1 - TURNED) * mode.weight), size)]
-                    found += [self._form(sensor, turned(mode), size)]
-                else:
-                    found.append(self._form(sensor, mode, size))
-        return tuple(found)
+        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
+        return tuple(self._form(sensor, way, size) for sensor, way in pairs)
 
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
         scale = 1.0 if size == "gain" else self.scale[sensor.name]
         form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
         name = ", ".join(filter(None, (one_of(sensor, self.own), mode.name)))
         weight, regime = mode.weight / len(self.own), mode.regime or {}
-        return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
+        form = replace(form, name=name, weight=weight, scale=scale)
+        return replace(form, shapes=mode.shapes, spread=mode.spread, regime=regime)
 
     def cause(self, key: str, modes: Sequence[Mode], size: Size | None = None, acts_on: str = "") -> Cause:
         """A cause of this kind.

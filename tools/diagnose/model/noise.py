@@ -98,10 +98,7 @@ def smooth_features(campaigns: Sequence[Measured], points: int) -> list[tuple[np
     """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
     and squares (n, k). The last `points` campaigns do not count in where they are zero and one.
     """
-    raw = []
-    for o in campaigns:
-        given = [o.sensors[s.name] for s in o.given]
-        raw.append(np.array([*given, o.campaign.direction]))
+    raw = [np.array([*(o.sensors[s.name] for s in o.given), o.campaign.direction]) for o in campaigns]
     whole = np.concatenate(raw[: len(raw) - points], axis=1)
     centre, spread = whole.mean(axis=1, keepdims=True), whole.std(axis=1, keepdims=True)
     kept = (spread > 1e-9 * np.maximum(abs(whole).max(axis=1, keepdims=True), 1e-12))[:, 0]
