@@ -9,6 +9,7 @@ from pathlib import Path
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.model.machines.roles import Roles
 from gearheat.model.run.schedule import Schedule
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import load
@@ -19,6 +20,7 @@ from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.diagnose.infer.logs import filter_of
 from gearheat.tools.diagnose.infer.walk import curves, independent
+from gearheat.tools.diagnose.library.knobs import knobs
 from gearheat.tools.diagnose.model.logs import TAILS, Passed
 from gearheat.tools.diagnose.model.windows import windows
 
@@ -188,6 +190,14 @@ def test_heat_from_outside_is_named(own_unit: Path, tmp_path: Path) -> None:
     assert found.answers[0].causes == (("heat.external_source",),)
     heat = next(cause for cause in found.causes if cause.id == "heat.external_source")
     assert heat.parameters[0].value == pytest.approx(80.0, rel=0.2)
+
+
+def test_what_cannot_differ_is_no_knob(own_unit: Path) -> None:
+    """A torque without a zero error, by the card, and heat where the rig has no loss to compare it with."""
+    roles = Roles.of((scenario := load(own_unit)).spec)
+    sensors = [replace(s, offset_sd=0.0) for s in sensors_of(scenario, Card())]
+    assert all(k.sd > 0 for k in knobs(roles, sensors, np.nan))
+    assert len(knobs(roles, sensors, np.nan)) < len(knobs(roles, sensors, 100.0))
 
 
 def test_what_factors_do_curves(own_unit: Path, tmp_path: Path) -> None:
