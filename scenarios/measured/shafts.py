@@ -119,7 +119,7 @@ def turned(
             signs = {s.name: (1.0, -1.0) for s in sensors if s.kind == "speed" and s.signs == (1.0, 1.0)}
         elif not same:
             direction = direction * rotation
-    if _both(direction) and not (loads and signs.keys() & {s.name for s in loads}):
+    if _both(direction) and signs.keys().isdisjoint(s.name for s in loads):
         read = [s for s in sensors if s.role == "read" and s.kind == "torque" and s.signs == (1.0, 1.0)]
         read = [s for s in read if not _both(values[s.name]) and {s.name, s.column}.isdisjoint(signed_by_card)]
         whole = [s.name for s in read if signed is None or (direction == signed).all()]

@@ -162,9 +162,10 @@ def _sort(outlooks: Sequence[Outlook]) -> list[Outlook]:
 
 def decide(now: Outlook | None, single: Sequence[Outlook], together: Sequence[Outlook]) -> Verdict:
     """One word: apart, one, several, none, or same for causes that are one answer."""
-    steps: dict[Verdict, Sequence[Outlook]] = {
-        "apart": [now] if now else [],
-        "one": single[:1],
-        "several": together[-1:],
-    }
-    return next((word for word, last in steps.items() if any(o.separates for o in last)), "none" if now else "same")
+    if now is None:
+        return "same"
+    if now.separates:
+        return "apart"
+    if single and single[0].separates:
+        return "one"
+    return "several" if together and together[-1].separates else "none"

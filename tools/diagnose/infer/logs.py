@@ -37,7 +37,7 @@ SHORTEST = 40
 FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
-#: After healthy logs those in question are, where time is no calendar's [s].
+#: Time from the last healthy logs to those in question, where it is no calendar's [s].
 LATER = 14 * 86400.0
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
@@ -58,7 +58,7 @@ class Fleet:
         length: samples of a window that count
         at: knobs of the machines at which they say it (machines, k)
         curves: of its knobs
-        seasons: machine and number of a season by the calendar -> number of that one in the levels, its middle time [s]
+        seasons: machine and number of a season -> number of that one in the levels, its middle time [s]
     """
 
     filter: Filter
@@ -163,11 +163,10 @@ def fleet(
     machine_of = keys[:, 0]
     suit(own, past, np.zeros((len(machine), len(sd))))
     own.learns = True
-    at, passed, said = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
+    at, passed = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
     bent = curves(own, past)
-    told = said.bent(at[machine], *bent.at(at[machine])).times(share)
-    levels = estimate(told, season, machine_of, begun)
+    levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
     return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
@@ -209,14 +208,13 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
-    z, passed, said = walk(own, data, season, (found.at[0], wide), step)
-    z = z[season]
+    z, passed = walk(own, data, season, (found.at[0], wide), step)
     nearer = walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)
+    at = z[season]
     if log_likelihood(nearer[1]) - log_likelihood(passed) > data.counts.sum():
-        z, passed, said = nearer  # a change is so large that it matters where the filter is
-        z = z[span]
+        at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
     bent = found.curves if found.share else curves(own, data)
-    told = said.bent(z, *bent.at(z)).times(found.share or independent(passed))
+    told = passed.told(*bent.at(at)).times(found.share or independent(passed))
     moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
     return Question(data, season, span, moves, bent.about(levels.mean[0]))
 
@@ -275,6 +273,4 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     root = np.linalg.cholesky(found.levels.covariance[0])
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    return LogProblem(
-        Logged(own.plant, campaign, found.knobs, (told.eta, told.H), root, asked.curves), season, found.levels
-    )
+    return LogProblem(Logged(own.plant, campaign, found.knobs, told, root, asked.curves), season, found.levels)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from ..model.curves import FLATTEST, SEEN, Curves
-from ..model.logs import Filter, Passed, Quadratics, log_likelihood
+from ..model.logs import Filter, Passed, log_likelihood
 from ..model.windows import Windows
 
 #: Passes over logs at most.
@@ -54,7 +54,7 @@ def walk(
     expected: tuple[np.ndarray, np.ndarray],
     progress: Callable[[int, float], None],
     share: float = 0.0,
-) -> tuple[np.ndarray, Passed, Quadratics]:
+) -> tuple[np.ndarray, Passed]:
     """The likeliest knobs of groups of windows: passes, each where the one before points to, until they stay there.
 
     Args:
@@ -66,7 +66,7 @@ def walk(
         share: of the samples that counts; 0 for what each pass shows
 
     Returns:
-        knobs (groups, k), the pass there, and what the windows say there
+        knobs (groups, k), and the pass there
     """
     begun, known, sd = expected[0], np.linalg.inv(expected[1]), np.array([k.sd for k in own.knobs])
     z, places = np.tile(begun, (int(group.max()) + 1, 1)), np.linspace(0, len(group) - 1, min(len(group), SOUGHT))
@@ -79,11 +79,8 @@ def walk(
     best = -np.inf, z
     for n in range(PASSES):
         passed = own.run(few, z[of], progress=partial(progress, n))
-        said, scatter, counted = (
-            _quadratics(passed, z[of]),
-            own.scatter,
-            whole * (share or min(independent(passed), 1.0)),
-        )
+        said, scatter = passed.told(z[of]), own.scatter
+        counted = whole * (share or min(independent(passed), 1.0))
         if own.learns:
             own.scatter = _scatter(own, passed)
             passed = own.run(few, z[of], slopes=False)
@@ -103,8 +100,7 @@ def walk(
         if n + 1 == PASSES or (not free and gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
             break
         z = z + step if free or gained > 0 else z
-    passed = own.run(data, z[group])
-    return z, passed, _quadratics(passed, z[group])
+    return z, own.run(data, z[group])
 
 
 def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
@@ -128,11 +124,6 @@ def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
         # where inputs change all the time a wider error of each would only hide what else is wrong
         logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
         own.moments = logs[1] > logs[0]
-
-
-def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
-    """Log likelihoods about zero from slopes and curvatures at z (n, k)."""
-    return Quadratics(passed.slope + (passed.curvature @ at[:, :, None])[:, :, 0], passed.curvature)
 
 
 def _scatter(own: Filter, passed: Passed) -> np.ndarray:

@@ -128,11 +128,14 @@ def fan(at: Context) -> Iterator[Cause]:
     slower = at.roles.failing("cooling.fan")
     clogged = {part: {path: e for path, e in paths.items() if e == 1.0} for part, paths in slower.items()}
     ways = {"turning slower": slower, "clogged": clogged} if clogged != slower else {"": slower}
-    made = [(words, cause) for words, groups in ways.items() for cause in scaled(at, "cooling.fan", groups)]
-    for _, first in made[:1]:
-        forms = [(words, form) for words, cause in made for form in cause.forms]
-        named = ((", ".join(filter(None, (form.name, words))), form) for words, form in forms)
-        yield replace(first, forms=tuple(replace(f, name=name, weight=f.weight / len(made)) for name, f in named))
+    forms = [
+        replace(form, name=", ".join(filter(None, (form.name, words))), weight=form.weight / len(ways))
+        for words, groups in ways.items()
+        for cause in scaled(at, "cooling.fan", groups)
+        for form in cause.forms
+    ]
+    if forms:
+        yield entry("cooling.fan", at).with_forms(forms)
 
 
 def thermostat(at: Context) -> Cause:

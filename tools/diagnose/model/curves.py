@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -34,16 +35,25 @@ class Curves:
 
     def at(self, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What moves (n, k) do, and the slopes of that (n, k)."""
-        found, slopes = self._of(self.base + moves)
-        return found - self._of(self.base + np.zeros_like(moves))[0], slopes
-
-    def _of(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        found, slopes = z.copy(), np.ones_like(z)
-        for j, curve in self.of.items():
-            inside = z[:, j].clip(SEEN[0], SEEN[-1])
-            slopes[:, j] = np.maximum(np.cosh(curve(inside)) * curve(inside, 1), FLATTEST)
-            found[:, j] = np.sinh(curve(inside)) + slopes[:, j] * (z[:, j] - inside)
+        found, slopes = moves.copy(), np.ones_like(moves)
+        for j in self.of:
+            (still,), slopes[:, j] = self._still[j]
+            if moves[:, j].any():
+                at, slopes[:, j] = self._of(j, self.base[j] + moves[:, j])
+                found[:, j] = at - still
         return found, slopes
+
+    @cached_property
+    def _still(self) -> Mapping[int, tuple[np.ndarray, np.ndarray]]:
+        """Number of a knob -> what it does that has not moved, and the slope there (1,)."""
+        return {j: self._of(j, self.base[[j]]) for j in self.of}
+
+    def _of(self, j: int, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What values of a knob do (n,), and the slopes (n,)."""
+        inside = z.clip(SEEN[0], SEEN[-1])
+        bent = self.of[j](inside)
+        slope = np.maximum(np.cosh(bent) * self.of[j](inside, 1), FLATTEST)
+        return np.sinh(bent) + slope * (z - inside), slope
 
     def back(self, found: np.ndarray) -> np.ndarray:
         """Knobs about the rig file (n, k) that do something (n, k); none is beyond what was seen."""

@@ -15,6 +15,7 @@ from ..library.knobs import Knob
 from .curves import Curves
 from .entries import Entries, Seen
 from .formula import Formula
+from .logs import Quadratics
 from .observe import Observed
 from .plant import Plant
 
@@ -29,7 +30,7 @@ class Logged(Observed):
         plant: the rig
         campaign: a row for each span, a test each
         knobs: what may differ
-        said: eta and H of the log likelihood of what moves y of a span's knobs do, eta y - y H y / 2 (n, k), (n, k, k)
+        told: what each span says of what moves of its knobs do
         root: columns by which the machine's knobs differ from its values, for independent normal numbers (k, k)
         curves: moves of knobs -> what they do
     """
@@ -39,18 +40,19 @@ class Logged(Observed):
         plant: Plant,
         campaign: Campaign,
         knobs: Sequence[Knob],
-        said: tuple[np.ndarray, np.ndarray],
+        told: Quadratics,
         root: np.ndarray,
         curves: Curves,
     ) -> None:
         names = [*(knob.name for knob in knobs), "day"]
         super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in names], {}, {})
         self.place, self.root, self.curves = {name: k for k, name in enumerate(names)}, root, curves
-        told = [_told(*own, np.array([k.sd for k in knobs])) for own in zip(*said, strict=True)]
+        sd = np.array([k.sd for k in knobs])
+        own = [_told(eta, H, sd) for eta, H in zip(told.eta, told.H, strict=True)]
         #: Slopes of the entries by the knobs in their spans (m, k).
-        self.by = np.concatenate([B for _, B in told])
-        row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told])
-        measured = np.concatenate([y for y, _ in told])
+        self.by = np.concatenate([B for _, B in own])
+        row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in own])
+        measured = np.concatenate([y for y, _ in own])
         none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
         self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 
