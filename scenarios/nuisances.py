@@ -123,7 +123,6 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
         prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
     """
-    base = {f"{p.name}.{key}": value for p in roles.spec.parts for key, value in p.values.items()}
     kinds = {p.name: p.type for p in roles.spec.parts}
 
     def sd_of(group: Group, path: str) -> float:
@@ -134,12 +133,12 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
             if known in prior_sd:
                 return prior_sd[known]
         if stated and group.key not in prior_sd:
-            return abs(stated / float(base[path]))
+            return abs(stated / roles.value(path))
         return group.share * prior_sd.get(group.key, DEFAULT_SD[group.key])
 
     found: list[Nuisance] = []
     for group in GROUPS:
-        signs = {path: sign for path, sign in group.paths(roles).items() if base.get(path) != 0.0}  # zero stays zero
+        signs = {path: sign for path, sign in group.paths(roles).items() if roles.value(path)}  # zero stays zero
         # an emissivity that makes up for an area follows it
         sds = {path: sd_of(group, path if sign > 0 else f"{path.partition('.')[0]}.A") for path, sign in signs.items()}
         if signs:
@@ -153,7 +152,7 @@ def usual_priors(scenario: Scenario) -> dict[str, float]:
     """Relative standard deviation by part type and parameter, and of single parts that differ; stated ones count."""
     kinds = {part.name: part.type for part in scenario.spec.parts}
     own: dict[str, float] = {}
-    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):
+    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.assumed_uncertainties):
         for path, exponent in nuisance.paths.items():
             if exponent > 0:
                 own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))

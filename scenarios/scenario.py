@@ -131,6 +131,16 @@ class Scenario:
             found[path] = hypot(found.get(path, 0.0), change)
         return found
 
+    @property
+    def assumed_uncertainties(self) -> dict[str, float]:
+        """Path -> standard uncertainty of its value in SI, before any data.
+
+        What data gave together with other values is uncertain in ways that one number of each does not say.
+        """
+        data = [p for p, source in self.value_sources.items() if source.startswith(("inferred", "calibrated"))]
+        known = {path: sd for path, sd in self.standard_uncertainties.items() if path not in data}
+        return known | self.uncertainties
+
     @cached_property
     def types(self) -> dict[str, type[Component]]:
         """Part -> its type."""

@@ -32,13 +32,13 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 @console.guard
 def challenge(
     sheet: Annotated[
-        Literal["own", "foreign", "textbook", "machines", "rigs", "logs", "lone_logs", "practice", "all"],
+        Literal["own", "foreign", "textbook", "machines", "plates", "rigs", "logs", "lone_logs", "practice", "all"],
         typer.Option(
             help="own: the planetary rig as the model has it; foreign: another simulator, with a healthy reference; "
             "textbook: a frozen third one with rough readings; machines: units of `gearheat new` by random name "
-            "plates; rigs: steady points of other shipped rigs; logs: such units in operation beside a healthy log; "
-            "lone_logs: without; practice: the campaigns of --practice; all: own, foreign, textbook, machines and "
-            "practice, pooled."
+            "plates; plates: such units of which no more is known; rigs: steady points of other shipped rigs; logs: "
+            "units of machines in operation beside a healthy log; lone_logs: without; practice: the campaigns of "
+            "--practice; all: own, foreign, textbook, machines and practice, pooled."
         ),
     ],
     n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
@@ -58,7 +58,7 @@ def challenge(
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []
     for name in POOLED if sheet == "all" else (sheet,):
-        kinds = OF_MACHINES if name in ("machines", "logs", "lone_logs") else KINDS
+        kinds = OF_MACHINES if name in ("machines", "plates", "logs", "lone_logs") else KINDS
         if only and only not in kinds:
             problems.append(f'challenge: {name} has no "{only}".{suggestion(only, kinds)} Kinds: {", ".join(kinds)}.')
     if off and off not in RULES:

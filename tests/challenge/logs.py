@@ -148,8 +148,8 @@ class Logged(Machine):
         return [self._moved(state, errors) for state, (_, errors) in zip(states, changes, strict=True)]
 
     def deviations(self) -> list[np.ndarray]:
-        """What each factor of the true machine does to all readings, for its logarithm."""
-        states = self._run([({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal])
+        """What a standard deviation of each reason does to all readings, to first order."""
+        states = self._run([(change, {}) for change in self.slightly()])
         return [self._moved(state, {}) / SMALL for state in states]
 
     def _moved(self, state: Mapping[str, np.ndarray], errors: Change) -> np.ndarray:

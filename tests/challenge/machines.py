@@ -27,6 +27,7 @@ from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.table import Sensor
+from gearheat.scenarios.scenario import Scenario
 from scipy.linalg import block_diag
 
 from .classes import classes_of
@@ -48,10 +49,10 @@ POWERS = (0.75, 45.0)
 #: Speeds of four- and six-pole motors [rpm].
 SPEEDS = (960.0, 1450.0)
 OILS = ("ISO VG 150 mineral", "ISO VG 220 mineral", "ISO VG 320 mineral")
-#: Standard deviation of a factor of the true machine over the rig file, whose values follow from a name plate, and of
-#: its course over its range [1].
+#: Standard deviation of a factor of the true machine over the rig file, which is known better than a name plate tells,
+#: and of its course over its range, as a share of that [1].
 UNEQUAL = 0.1
-CURVED = 0.03
+CURVED = 0.3
 #: Parameters of losses and heat paths that differ so.
 TRUE = ("*.k_loss", "*.k_mu", "cooling.A*", "foot.k_G", "oil_wall.A", "oil_gears_*.A")
 #: Standard deviations by which what is hidden moves the readings, at least and at most.
@@ -111,16 +112,24 @@ FAULTS: tuple[Fault, ...] = (
 class Machine:
     """A true machine on its bench."""
 
+    curved = CURVED
+
     def __init__(self, path: Path, rng: np.random.Generator) -> None:
+        self.tell(path)
         scenario = load(str(path))
         self.nominal, self.sensors = Nominal(scenario), sensors_of(scenario, Card())
         self.batch = Batch(self.nominal.flat)
         roles = Roles.of(scenario.spec)
         names = [n for n in self.nominal.flat.index if "." in n]
-        unequal = [n for n in names if any(fnmatchcase(n, t) for t in TRUE)]
+        #: Why the true machine differs: path -> relative standard deviation; all of a reason deviate together.
+        self.reasons = self.deviate(scenario, names)
+        unequal = [n for reason in self.reasons for n in reason]
         faulty = [n for n in names if any(fnmatchcase(n, f.pattern) for f in FAULTS)]
         self.healthy = {n: 0.0 if n == HEAT else float(roles.value(n)) for n in (*unequal, *faulty)}
-        self.unequal = {n: (UNEQUAL * rng.standard_normal(), CURVED * rng.standard_normal(3)) for n in unequal}
+        self.unequal: dict[str, tuple[float, np.ndarray]] = {}
+        for reason in self.reasons:
+            level, slopes = rng.standard_normal(), self.curved * rng.standard_normal(3)
+            self.unequal |= {n: (sd * level, sd * slopes) for n, sd in reason.items()}
         self.lay_out(rng)
         self.loss = self._loss()
         by = {s.name: k for k, s in enumerate(self.sensors)}
@@ -128,6 +137,14 @@ class Machine:
         self.sound = self.read({}, {})
         if (self.sound[:, by["T_oil"]] - self.sound[:, by["T_amb"]]).max() < WARM:
             raise ArithmeticError("too cold")
+
+    def tell(self, path: Path) -> None:
+        """What the rig file says of how uncertain it is: nothing, so that the diagnosis takes what is usual."""
+        path.write_text(path.read_text("utf-8").partition("\n[uncertainties.")[0], "utf-8")
+
+    def deviate(self, scenario: Scenario, names: Sequence[str]) -> list[dict[str, float]]:
+        """Why the true machine differs, of all names of its values."""
+        return [{n: UNEQUAL} for n in names if any(fnmatchcase(n, t) for t in TRUE)]
 
     def lay_out(self, rng: np.random.Generator) -> None:
         """Draw what is run: points of speed, load and room."""
@@ -188,20 +205,23 @@ class Machine:
 
     def uncertain(self) -> list[np.ndarray]:
         """What a standard deviation of each factor and of each instrument's tolerance does to all readings."""
-        known = [UNEQUAL * deviation for deviation in self.deviations()]
         offsets = np.diag([s.offset_sd for s in self.sensors])
-        return known + [self.in_repeatabilities(np.tile(one, (len(self.sound), 1))) for one in offsets]
+        return self.deviations() + [self.in_repeatabilities(np.tile(one, (len(self.sound), 1))) for one in offsets]
 
     def deviations(self) -> list[np.ndarray]:
-        """What each factor of the true machine does to all readings, for its logarithm."""
-        return [e / SMALL for e in self.effects([({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal])]
+        """What a standard deviation of each reason does to all readings, to first order."""
+        return [e / SMALL for e in self.effects([(change, {}) for change in self.slightly()])]
+
+    def slightly(self) -> list[Change]:
+        """A small share of a standard deviation of each reason."""
+        return [{n: np.exp(SMALL * sd) * self.healthy[n] for n, sd in reason.items()} for reason in self.reasons]
 
     def unsteady(self) -> list[np.ndarray]:
         """The same of the courses of the factors, and of the hall at each point."""
         sd = np.array([s.repeat_sd for s in self.sensors])
         factors = self.deviations()
         courses = np.repeat([_course(point) for point in self.points], len(sd), axis=0).T
-        known = [CURVED * course * factor for factor in factors for course in courses]
+        known = [self.curved * course * factor for factor in factors for course in courses]
         other = self.read({}, {}, [(n, load_, room + SMALL) for n, load_, room in self.points])
         return known + [ANY / SMALL * column for column in block_diag(*(other - self.sound) / sd)]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from . import foreign, logs, machines, model_rig
+from . import foreign, logs, machines, model_rig, plates
 from .cases import Sheet, make_case
 from .textbook import campaign as textbook
 
@@ -24,6 +24,7 @@ MAKERS: Mapping[str, Callable[..., dict[str, Any]]] = {
     "machines": partial(machines.make, machines.Machine, len(SHEETS)),
     "logs": partial(machines.make, partial(logs.Logged, True), len(SHEETS) + 1),
     "lone_logs": partial(machines.make, partial(logs.Logged, False), len(SHEETS) + 2),
+    "plates": partial(machines.make, plates.Plated, len(SHEETS) + 3),
 }
 #: Sheets whose scores are pooled by `--sheet all`.
 POOLED = ("own", "foreign", "textbook", "machines")

@@ -17,7 +17,6 @@ from .forms import Context, Regime, beside_own_law, weighed
 STARVED = (0.5, 0.42, 0.08)
 #: Parts whose whole friction is larger or smaller, whatever they carry.
 RUBBING = (
-    "losses.bearing_friction",
     "losses.pair_preload",
     "losses.clutch_drag",
     "losses.pump_power",
@@ -32,7 +31,7 @@ def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family that the machine's parts allow."""
     places = at.roles.places
     if wet := _stirring(at):
-        yield beside_own_law(extra_loss(at, "losses.churning", wet), at, {p.name: p.parts for p in wet})
+        yield _extra_or_factor(at, "losses.churning", wet)
         level = extra_loss(at, "losses.oil_level", wet[:1])
         yield replace(level, forms=tuple(_wetting(form, at) for form in level.forms))
         yield extra_loss(at, "losses.windage", wet[:1])
@@ -40,12 +39,13 @@ def causes(at: Context) -> Iterator[Cause]:
         yield oil_viscosity(at)
     if bearings := places["bearing"]:
         yield extra_loss(at, "losses.bearing_preload", bearings)
+        yield _extra_or_factor(at, "losses.bearing_friction", bearings)
     for name in RUBBING:
         yield from scaled(at, name)
     if seals := places["seal"]:
-        yield beside_own_law(extra_loss(at, "losses.seal_drag", seals), at, {p.name: p.parts for p in seals})
+        yield _extra_or_factor(at, "losses.seal_drag", seals)
     if teeth := places["teeth"]:
-        yield beside_own_law(extra_loss(at, "losses.mesh_friction", teeth), at, {p.name: p.parts for p in teeth})
+        yield _extra_or_factor(at, "losses.mesh_friction", teeth)
         if at.both_ways:
             yield extra_loss(at, "losses.mesh_direction", teeth, _sides)
         yield film_starvation(at, teeth)
@@ -61,6 +61,11 @@ def extra_loss(at: Context, name: str, places: Sequence[Place], as_keys: Keys = 
         onsets = tuple(Regime.WORDS.values())
         forms = tuple(replace(f, low=0.0) if f.regime.get("quantity", "").startswith(onsets) else f for f in forms)
     return known.with_forms(forms)
+
+
+def _extra_or_factor(at: Context, name: str, places: Sequence[Place]) -> Cause:
+    """An extra loss of the table, or a factor on what the parts at some places lose by their own laws."""
+    return beside_own_law(extra_loss(at, name, places), at, {place.name: place.parts for place in places})
 
 
 def _stirring(at: Context) -> Sequence[Place]:
