@@ -33,6 +33,7 @@ class Nuisance:
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
         by_oil: whether it is another one with each oil
+        rough: whether the rig file says how uncertain it is: what rules leave open is its law, too
         parts, connections: what is added to the machine for it, neutral
     """
 
@@ -42,6 +43,7 @@ class Nuisance:
     wide: float
     refilled: bool = False
     by_oil: bool = False
+    rough: bool = False
     parts: tuple[PartSpec, ...] = ()
     connections: tuple[tuple[str, ...], ...] = ()
 
@@ -133,7 +135,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
             if known in prior_sd:
                 return prior_sd[known]
         if stated and group.key not in prior_sd:
-            return abs(stated / roles.value(path))
+            return float(abs(stated / roles.value(path)))
         return group.share * prior_sd.get(group.key, DEFAULT_SD[group.key])
 
     found: list[Nuisance] = []
@@ -144,7 +146,8 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
         if signs:
             most = max(sds.values())
             exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
-            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil))
+            rough = not uncertainties.keys().isdisjoint(signs)
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, rough))
     return tuple(found)
 
 

@@ -139,7 +139,7 @@ class Scenario:
         """
         data = [p for p, source in self.value_sources.items() if source.startswith(("inferred", "calibrated"))]
         known = {path: sd for path, sd in self.standard_uncertainties.items() if path not in data}
-        return known | self.uncertainties
+        return {**known, **self.uncertainties}
 
     @cached_property
     def types(self) -> dict[str, type[Component]]:

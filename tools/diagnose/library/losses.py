@@ -9,22 +9,12 @@ import casadi as ca
 
 from ....model.machines.roles import Place
 from .cause import Cause, Form, Row, Theta, Values
-from .entries import entry, scaled
+from .entries import TABLE, entry, scaled
 from .extras import Extras, Keys, as_they_are
 from .forms import Context, Regime, beside_own_law, weighed
 
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
-#: Parts whose whole friction is larger or smaller, whatever they carry.
-RUBBING = (
-    "losses.pair_preload",
-    "losses.clutch_drag",
-    "losses.pump_power",
-    "losses.pump_leak",
-    "losses.motor_drag",
-    "losses.motor_constant",
-    "losses.motor_windings",
-)
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -40,7 +30,7 @@ def causes(at: Context) -> Iterator[Cause]:
     if bearings := places["bearing"]:
         yield extra_loss(at, "losses.bearing_preload", bearings)
         yield _extra_or_factor(at, "losses.bearing_friction", bearings)
-    for name in RUBBING:
+    for name in (name for name, said in TABLE.items() if said.get("of_parts")):
         yield from scaled(at, name)
     if seals := places["seal"]:
         yield _extra_or_factor(at, "losses.seal_drag", seals)
