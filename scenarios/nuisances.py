@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..model.machines.roles import Roles
@@ -33,7 +33,7 @@ class Nuisance:
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
         by_oil: whether it is another one with each oil
-        rough: whether the rig file says how uncertain it is: what rules leave open is its law, too
+        rough: whether it follows from rules, which leave its law open, too
         parts, connections: what is added to the machine for it, neutral
     """
 
@@ -117,13 +117,16 @@ GROUPS: tuple[Group, ...] = (
 )
 
 
-def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mapping[str, float]) -> tuple[Nuisance, ...]:
+def nuisances(
+    roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mapping[str, float], rough: Collection[str] = ()
+) -> tuple[Nuisance, ...]:
     """All groups that the machine has, each with its prior.
 
     Args:
         roles: of the machine
         prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
+        rough: paths of what rules give: they leave the laws open, too
     """
     kinds = {p.name: p.type for p in roles.spec.parts}
 
@@ -146,8 +149,8 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
         if signs:
             most = max(sds.values())
             exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
-            rough = not uncertainties.keys().isdisjoint(signs)
-            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, rough))
+            by_rule = not signs.keys().isdisjoint(rough)
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, by_rule))
     return tuple(found)
 
 
@@ -155,7 +158,7 @@ def usual_priors(scenario: Scenario) -> dict[str, float]:
     """Relative standard deviation by part type and parameter, and of single parts that differ; stated ones count."""
     kinds = {part.name: part.type for part in scenario.spec.parts}
     own: dict[str, float] = {}
-    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.assumed_uncertainties):
+    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties_before_data):
         for path, exponent in nuisance.paths.items():
             if exponent > 0:
                 own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))

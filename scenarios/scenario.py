@@ -132,14 +132,16 @@ class Scenario:
         return found
 
     @property
-    def assumed_uncertainties(self) -> dict[str, float]:
-        """Path -> standard uncertainty of its value in SI, before any data.
-
-        What data gave together with other values is uncertain in ways that one number of each does not say.
-        """
+    def rough(self) -> frozenset[str]:
+        """Paths of values that are uncertain together, as rules give them; what data gave so is known better."""
         data = [p for p, source in self.value_sources.items() if source.startswith(("inferred", "calibrated"))]
-        known = {path: sd for path, sd in self.standard_uncertainties.items() if path not in data}
-        return {**known, **self.uncertainties}
+        return frozenset(path for changes in self.joint_uncertainties.values() for path in changes) - {*data}
+
+    @property
+    def uncertainties_before_data(self) -> dict[str, float]:
+        """Path -> standard uncertainty of its value in SI, but for what data gave together with other values."""
+        known = self.standard_uncertainties
+        return {path: known[path] for path in (*self.uncertainties, *sorted(self.rough))}
 
     @cached_property
     def types(self) -> dict[str, type[Component]]:

@@ -25,7 +25,7 @@ OIL_BESIDE_REFERENCE = 0.25
 #: Share of a nuisance's prior by which it follows speed, load and room otherwise than its law, over a spread of each.
 #: Of 15 sound machines whose losses so do, 8 raised an alarm without it, 1 with it, none with .25, which finds fewer.
 LAW = 0.15
-#: The same of what the rig file calls uncertain. Bearings after Palmgren have .5 of it against SKF, seals of
+#: The same of what rules give. Bearings after Palmgren have .5 of it against SKF, seals of
 #: ISO/TR 14179-2 .25.
 ROUGH_LAW = 0.5
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
