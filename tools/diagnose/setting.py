@@ -86,8 +86,8 @@ def setting(
     causes = library(roles, ranges, sensors, libraries)
     wide = reference is not None
     films = thin_film_friction(Context(roles, ranges, sensors))
-    known = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
-    known += (films,) if films else ()
+    stated = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
+    known = (*stated, *([films] if films else ()))
     known = tuple(replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
