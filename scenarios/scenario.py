@@ -141,7 +141,7 @@ class Scenario:
     def uncertainties_before_data(self) -> dict[str, float]:
         """Path -> standard uncertainty of its value in SI, but for what data gave together with other values."""
         known = self.standard_uncertainties
-        return {path: known[path] for path in (*self.uncertainties, *sorted(self.rough))}
+        return {**self.uncertainties, **{path: known[path] for path in sorted(self.rough)}}
 
     @cached_property
     def types(self) -> dict[str, type[Component]]:

@@ -40,6 +40,7 @@ PLATES: Mapping[int, Plate] = {
 #: What is hidden -> factor on a parameter of parts whose names begin with a word.
 FAULTS: Mapping[str, tuple[str, str, float]] = {
     "healthy": ("fan", "k_v", 1.0),
+    "seals by another law": ("input_seal", "k_loss", 2.5),
     "fan dead": ("fan", "k_v", 0.0),
     "fan at 40 %": ("fan", "k_v", 0.4),
     "bearing": ("input_bearing_a", "k_loss", 3.0),

@@ -25,7 +25,7 @@ NAMED: Mapping[str, tuple[str, int]] = {
 }
 #: Seed of the rig that is diagnosed fastest.
 CHEAP = 3
-CASES = [(f, seed) for f in FAULTS for seed in PLATES] if ALL else [(f, CHEAP) for f in thin(NAMED, apart=2)]
+CASES = [(f, seed) for f in FAULTS for seed in PLATES] if ALL else [(f, CHEAP) for f in thin(FAULTS, apart=2)]
 
 
 @pytest.mark.parametrize(("fault", "seed"), CASES)

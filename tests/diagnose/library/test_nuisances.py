@@ -70,6 +70,14 @@ def test_the_rig_file_says_how_uncertain_unless_the_card_does(case):
     assert named(case, "planetary", {"hconv": 0.3}, stated)["foundation"].sd == pytest.approx(0.15)
 
 
+def test_what_rules_give_leaves_its_law_open(case):
+    roles, stated = case("planetary").roles, {"sun_seal.k_loss": 0.7, "carrier_seal.k_loss": 0.7}
+    found = {n.name: n for n in nuisances(roles, {"LipSeal.k_loss": 0.4}, stated, {*stated})}
+    assert [name for name, n in found.items() if n.rough] == ["seal loss"]
+    assert found["seal loss"].sd == 0.4
+    assert named(case, "planetary", None, stated)["seal loss"].sd == pytest.approx(0.7)
+
+
 @pytest.mark.parametrize("rig", ["planetary", "helical_two_stage", "cycloidal"])
 def test_more_convection_does_not_radiate_more(case, rig):
     c = case(rig)
