@@ -14,10 +14,18 @@ LIFE = 20_000.0
 #: Least load of a bearing [N].
 LIGHT = 100.0
 #: Names of the bearings to choose from, by how they begin.
-SERIES = {"ball": ("SKF 62", "SKF 63"), "tapered": ("SKF 302", "SKF 313", "SKF 320"), "cylindrical": ("NU ",)}
-#: What the bearings of a unit roll on, and the kinds of shafts with and without tooth forces: the first that lasts.
+SERIES = {
+    "ball": ("SKF 62", "SKF 63"),
+    "tapered": ("SKF 302", "SKF 313", "SKF 320"),
+    "cylindrical": ("NU ",),
+}
+#: What the bearings of a unit roll on, and the kinds of shafts with tooth forces: the first that lasts.
 CHOICES = {"auto": ("ball", "tapered"), "ball": ("ball",), "roller": ("tapered",)}
-UNLOADED = {"auto": ("ball", "cylindrical"), "ball": ("ball",), "roller": ("cylindrical",)}
+#: Those of shafts without, and of shafts that planets drive, which a pair that is set against each other holds.
+UNLOADED = CHOICES | {"auto": ("ball", "cylindrical"), "roller": ("cylindrical",)}
+HELD = CHOICES | {"auto": ("tapered", "ball", "cylindrical"), "roller": ("tapered", "cylindrical")}
+#: Preload of such a pair over the load rating [1].
+PRELOAD = 0.05
 #: Largest bore over the diameter of a shaft without a pinion, above which bearings of another kind are taken [1].
 THICK = 2.5
 
