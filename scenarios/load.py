@@ -71,7 +71,7 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None =
     """The scenario of a shipped rig, or of a rig file.
 
     Args:
-        name_or_path: a name of `list_rigs`, a TOML file, or a folder with a `rig.toml`
+        name_or_path: a name of `list_rigs`, a TOML file, with its ending or without, or a folder with a `rig.toml`
         types: name -> class of every type a part of the rig may have; those of the project and of installed packages if
             None
 
@@ -97,10 +97,9 @@ def _find(name_or_path: str | Path) -> Path:
     with suppress(OSError):  # no name of a file at all
         if len(path.parts) == 1 and shipped.is_file():
             return shipped
-        if path.is_dir() and (path / "rig.toml").is_file():
-            return path / "rig.toml"
-        if path.is_file():
-            return path
+        for file in (path / "rig.toml", path, Path(f"{path}.toml")):
+            if file.is_file():
+                return file
     names = list_rigs()
     beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
     close = suggestion(str(name_or_path), [*names, *beside]) or suggestion(f"{name_or_path}.toml", beside)

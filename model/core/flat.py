@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -221,6 +221,18 @@ class FlatModel:
         places = [(name, self.index[name][1]) for name in relation.parameters if name in self.index]
         own = f"{relation.component}."
         return ", ".join(f"{n.removeprefix(own)} = {text(p[i], self.parameters[i].unit, 6)}" for n, i in places)
+
+    def holding(self, names: Collection[str]) -> FlatModel:
+        """The same with some of its inputs as parameters, which are what they start at."""
+        held = [i for i, q in enumerate(self.inputs) if q.name in names]
+        free = [i for i in range(len(self.inputs)) if i not in held]
+        return replace(
+            self,
+            inputs=tuple(self.inputs[i] for i in free),
+            parameters=(*self.parameters, *(self.inputs[i] for i in held)),
+            u=self.u[free],
+            p=ca.vertcat(self.p, self.u[held]),
+        )
 
     def starts(self, kind: str) -> np.ndarray:
         """Default values of all states, algebraic variables, inputs or parameters, in order."""

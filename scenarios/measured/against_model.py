@@ -164,20 +164,26 @@ def _torque(
     campaign: Campaign, nominal: Nominal, sensor: Sensor, pairs: dict[int, tuple[float, float]]
 ) -> Iterator[str]:
     """A torque that is read far from the model's: another unit, another sign, or none at all."""
-    ratios = np.array([read / model for read, model in pairs.values() if abs(model) > 0])
+    ratios = {row: read / model for row, (read, model) in pairs.items() if abs(model) > 0}
     factor = TORQUE_FACTOR if len(nominal.ends) > 1 else LOSS_FACTOR
-    middle = float(np.median(ratios)) if len(ratios) else 1.0
-    if 1 / factor <= middle <= factor:
+    odd = {row: ratio for row, ratio in ratios.items() if not 1 / factor <= ratio <= factor}
+    if 2 * len(odd) < max(len(ratios), 1):
         return
-    row, (read, model) = next(iter(pairs.items()))
-    where = f"{place(campaign, row)}: {sensor.column} gives {format_value(sensor, read)}"
-    if 1 / factor <= -middle <= factor:
-        yield (
-            f"{where}, the model {format_value(sensor, model)}: its sign is the other one. Turn it, or say"
-            " magnitude = true of this sensor in the card."
-        )
+    turned = [row for row, ratio in odd.items() if 1 / factor <= -ratio <= factor]
+    sign = 2 * len(turned) >= len(odd)
+    row = turned[0] if sign else next(row for row in odd if row not in turned)
+    read, model = (format_value(sensor, value) for value in pairs[row])
+    where = f"{place(campaign, row)}: {sensor.column} gives {read}, the model {model}"
+    if not sign:
+        yield f"{where}. Check its unit, which is taken for {sensor.unit}."
+    elif len(turned) == len(ratios):
+        yield f"{where}: its sign is the other one. Turn it, or say magnitude = true of this sensor in the card."
     else:
-        yield f"{where}, the model {format_value(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
+        yield (
+            f"{where}: its sign is the other one in {len(turned)} of {len(ratios)} rows, those of one direction. Write"
+            " speeds and torques of both directions with the model's signs, torques positive into the gearbox; or"
+            " torques without a sign, with signed speeds or a column direction (1, 2)."
+        )
 
 
 def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, float]]) -> Iterator[str]:

@@ -34,7 +34,7 @@ from .sensors import (
     sensors_of,
     si_of,
 )
-from .shafts import torques
+from .shafts import torques, turned
 from .table import Campaign, Sensor
 from .times import logged_step
 
@@ -210,7 +210,9 @@ class _Reader:
         rows = np.lexsort((np.arange(cells.n), position, order))
         first = np.append(True, np.diff(position[rows]) != 0)
         test = np.cumsum(first) - 1
-        direction = self._direction(cells, values)[rows]
+        said = {name for name, table in self.card.sensors.items() if table.signs is not None}
+        self.sensors, values, direction = turned(self.scenario, self.sensors, values, self._direction(cells), said)
+        direction = direction[rows]
         starts = rows[first]
         points = cells.numbers("point")
         spoken = self.scenario.protocol.notes if self.scenario.protocol else ()  # of columns that nothing reads
@@ -245,17 +247,10 @@ class _Reader:
         columns = {name: k for k, name in enumerate(self.header) if name not in used}
         return {name: tuple(self.rows[row][1][k] for row in rows) for name, k in columns.items()}
 
-    def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
-        """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""
+    def _direction(self, cells: Cells) -> np.ndarray:
+        """+1 and -1 (n,) as stated, else 0."""
         stated = cells.numbers("direction")
-        if "direction" in self.context:
-            return np.where(stated == 2, -1.0, np.nan_to_num(stated))
-        for sensor in (s for s in self.sensors if s.role == "given" and s.kind == "torque" and s.signs == (1.0, 1.0)):
-            torque = values[sensor.name]
-            if (torque < 0).any() and (torque > 0).any():
-                usual = np.sign(Nominal(self.scenario).value(sensor.reads)) or 1.0
-                return np.asarray(np.sign(torque) * usual)
-        return np.zeros(cells.n)
+        return np.where(stated == 2, -1.0, np.nan_to_num(stated))
 
     def _dwell(self, cells: Cells, stated: np.ndarray, rows: np.ndarray, test: np.ndarray) -> np.ndarray:
         """Time each row was held [s] (n,)."""

@@ -1,4 +1,4 @@
-"""Repeated points in running order: what each sensor shows at the same conditions, against its stated accuracy."""
+"""Repeated points in running order: what each sensor shows at the same conditions beyond what a model says of them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from .table import Campaign, Sensor
 NEAR_RANGE = 0.05
 #: Given conditions nearer than this part of their size are the same point [1].
 NEAR_SIZE = 0.02
-#: Fewer degrees of freedom say nothing about a scatter.
-LEAST = 3
 
 
 @dataclass(frozen=True)
@@ -24,41 +22,25 @@ class Repeat:
     Args:
         conditions: given sensor, rooms left out -> mean magnitude [SI]
         oil: of the tests, mountings may differ
-        order: running order of each test (n,)
-        mounting: of each test (n,)
-        total, difference: read sensor -> mean of what it shows in both directions, and half their difference (n,) [SI]:
-            temperatures over the room; without directions the difference is zero
+        tests: their numbers, from 0 (n,)
+        total, difference: read sensor -> mean in both directions of what it shows beyond the model, and half their
+            difference (n,) [SI], each less its mean; NaN where there is none
     """
 
     conditions: Mapping[str, float]
     oil: str
-    order: np.ndarray
-    mounting: tuple[str, ...]
+    tests: Sequence[int]
     total: Mapping[str, np.ndarray]
     difference: Mapping[str, np.ndarray]
 
 
-@dataclass(frozen=True)
-class Scatter:
-    """Standard deviation of one reading of a sensor by repeated points, and by the card [SI].
+def repeats(campaign: Campaign, left: Mapping[str, np.ndarray]) -> tuple[Repeat, ...]:
+    """Groups of tests at the same given conditions; rows that were run and not read count where they were run.
 
     Args:
-        sensor: name
-        total, difference: of the sum and of the difference of the directions, each as that of a single reading;
-            NaN with fewer than three degrees of freedom, the difference without directions
-        stated: that of the card: its own and, for a temperature, the room's
-        freedom: degrees of freedom of the sum
+        campaign: the readings
+        left: read sensor -> what it shows less what a model says of it (n,) [SI]
     """
-
-    sensor: str
-    total: float
-    difference: float
-    stated: float
-    freedom: int
-
-
-def repeats(campaign: Campaign) -> tuple[Repeat, ...]:
-    """Groups of tests at the same given conditions; rows that were run and not read count where they were run."""
     keys = _conditions(campaign)
     groups: list[list[int]] = []
     for test in range(campaign.n_tests):
@@ -67,35 +49,18 @@ def repeats(campaign: Campaign) -> tuple[Repeat, ...]:
             groups.append([test])
         else:
             same.append(test)
-    return tuple(_repeat(campaign, group) for group in groups if len(group) > 1)
+    return tuple(_repeat(campaign, left, group) for group in groups if len(group) > 1)
 
 
-def scatters(campaign: Campaign, found: Sequence[Repeat]) -> tuple[Scatter, ...]:
-    """Scatter of each read sensor over repeated points, against the card's.
+def stated(campaign: Campaign, sensor: Sensor) -> float:
+    """Standard deviation by the card of one reading less a model [SI]: its own and, of a temperature, the room's.
 
     Args:
         campaign: the readings
-        found: its repeated points
+        sensor: one that is compared
     """
     rooms = [s.repeat_sd for s in campaign.given if s.kind == "ambient"]
-    made = []
-    for sensor in campaign.read:
-        total, freedom = _pool([group.total[sensor.name] for group in found])
-        difference, _ = _pool([group.difference[sensor.name] for group in found])
-        both = bool((campaign.direction < 0).any())
-        room = rooms[0] if rooms and sensor.kind.endswith("_temp") else 0.0
-        stated = float(np.hypot(sensor.repeat_sd, room))
-        scale = 2**0.5 if both else 1.0
-        made.append(Scatter(sensor.name, scale * total, scale * difference if both else np.nan, stated, freedom))
-    return tuple(made)
-
-
-def _pool(groups: Sequence[np.ndarray]) -> tuple[float, int]:
-    """Pooled standard deviation of values in groups, and its degrees of freedom."""
-    known = [values[np.isfinite(values)] for values in groups]
-    freedom = sum(len(values) - 1 for values in known if len(values) > 1)
-    squares = sum(float(np.sum((values - values.mean()) ** 2)) for values in known if len(values) > 1)
-    return (float(np.sqrt(squares / freedom)) if freedom >= LEAST else np.nan), freedom
+    return float(np.hypot(sensor.repeat_sd, rooms[0] if rooms and sensor.kind.endswith("_temp") else 0.0))
 
 
 Key = tuple[tuple[int, ...], tuple[tuple[float, float], ...], str]
@@ -126,28 +91,26 @@ def _same(a: Key, b: Key) -> bool:
     return all(abs(x - y) <= near for (x, near), (y, _) in zip(values_a, values_b, strict=True))
 
 
-def _repeat(campaign: Campaign, tests: Sequence[int]) -> Repeat:
+def _repeat(campaign: Campaign, left: Mapping[str, np.ndarray], tests: Sequence[int]) -> Repeat:
     rows = [np.flatnonzero(campaign.test == test) for test in tests]
     drives = [s for s in campaign.given if s.kind != "ambient"]
-    halves = {s.name: [_directions(campaign, s, own) for own in rows] for s in campaign.read}
+    reverse = campaign.direction < 0
+    halves = {s.name: np.array([_directions(left[s.name][k], reverse[k]) for k in rows]) for s in campaign.read}
     return Repeat(
         conditions={s.name: float(np.mean(np.abs(campaign.values[s.name][np.concatenate(rows)]))) for s in drives},
         oil=campaign.oil[tests[0]],
-        order=campaign.order[list(tests)],
-        mounting=tuple(campaign.mounting[test] for test in tests),
-        total={name: np.array([(a + b) / 2 for a, b in pairs]) for name, pairs in halves.items()},
-        difference={name: np.array([(a - b) / 2 for a, b in pairs]) for name, pairs in halves.items()},
+        tests=tests,
+        total={name: _centred(pair.sum(axis=1) / 2) for name, pair in halves.items()},
+        difference={name: _centred(-np.diff(pair)[:, 0] / 2) for name, pair in halves.items()},
     )
 
 
-def _directions(campaign: Campaign, sensor: Sensor, rows: np.ndarray) -> tuple[float, float]:
-    """Mean of what a sensor shows in the forward and in the reverse direction of a test; the same where it has one."""
-    values = campaign.values[sensor.name][rows]
-    rooms = [s.name for s in campaign.given if s.kind == "ambient"]
-    if sensor.kind.endswith("_temp") and rooms:
-        values = values - campaign.values[rooms[0]][rows]
-    reverse = campaign.direction[rows] < 0
-    if not reverse.any():
-        return float(np.mean(values)), float(np.mean(values))
-    forward = float(np.mean(values[~reverse])) if (~reverse).any() else np.nan
-    return forward, float(np.mean(values[reverse]))
+def _directions(values: np.ndarray, reverse: np.ndarray) -> tuple[float, float]:
+    """Means in the forward and in the reverse direction of a test; the same where it has one."""
+    forward, back = (float(np.mean(values[way])) if way.any() else np.nan for way in (~reverse, reverse))
+    return forward, forward if np.isnan(back) and not reverse.any() else back
+
+
+def _centred(values: np.ndarray) -> np.ndarray:
+    """Values less their mean."""
+    return values - np.nanmean(values) if np.isfinite(values).any() else values

@@ -63,6 +63,10 @@ class Sensed:
         """Sensors that are compared."""
         return tuple(s for s in self.sensors if s.role == "read")
 
+    def driving(self, kind: str) -> Sensor | None:
+        """The first given sensor of a kind; None without one."""
+        return next((s for s in self.given if s.kind == kind), None)
+
 
 @dataclass(frozen=True, eq=False)
 class Course:
@@ -185,6 +189,14 @@ class Campaign(Sensed):
     def sensor(self, name: str) -> Sensor:
         """The sensor of a name."""
         return next(s for s in self.sensors if s.name == name)
+
+    def range_of(self, kind: str) -> tuple[float, float] | None:
+        """Least and largest magnitude of the first given sensor of a kind; None without one."""
+        sensor = self.driving(kind)
+        if sensor is None:
+            return None
+        values = np.abs(self.values[sensor.name])
+        return float(np.nanmin(values)), float(np.nanmax(values))
 
     def still(self, sensor: Sensor) -> bool:
         """Whether a sensor shows about the same in the last tests, or what it shows is not known."""

@@ -23,6 +23,14 @@ def test_rl_equation(i: float, V: float) -> None:
     assert derivative(rl(R=10.0, L=2.0), [i], [V]) == pytest.approx([(V - 10 * i) / 2], rel=1e-14)
 
 
+def test_an_input_that_is_held_is_a_parameter() -> None:
+    held = rc(R=100.0, C=1e-3).holding(["battery.V"])
+    assert held.locate("battery.V") == ("parameter", len(held.parameters) - 1) and not held.inputs
+    p = held.starts("parameter")
+    p[-1] = 5.0
+    assert evaluate_at(held, [3.0], [], p)["ode"] == pytest.approx([20.0], rel=1e-14)
+
+
 def test_rc_charges_as_in_closed_form() -> None:
     t = np.linspace(0.0, 0.5, 51)
     run = simulate(rc(R=100.0, C=1e-3), join_phases([(0.5, {"battery.V": 5.0})]), times=t)

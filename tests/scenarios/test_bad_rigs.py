@@ -315,6 +315,8 @@ def test_the_file_beside_is_suggested(tmp_path: Path, monkeypatch: pytest.Monkey
     (tmp_path / "gearbox_7.toml").write_text("")
     with pytest.raises(GearheatError, match=r'Did you mean "gearbox_7\.toml"'):
         load("gearbox_7.tml")
+    (tmp_path / "gearbox_7.toml").write_text((RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8"))
+    assert load("gearbox_7").name == load("gearbox_7.toml").name, "its ending may be left out"
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,9 @@ from .answer.gain import measure_gains
 from .answer.plan import Plan, rank_experiments
 from .answer.predict import predict
 from .answer.quality import average_residuals, check_data
+from .infer.evidence import White
 from .infer.found import Found
-from .infer.screen import changes, samples
+from .infer.screen import screened
 from .infer.weigh import Options, weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
@@ -38,11 +39,7 @@ BLIND = 0.01
 
 
 def diagnose(inputs: Inputs, progress: Progress) -> Findings:
-    """What the data of a request say.
-
-    Args:
-        inputs: what its files hold
-        progress: called with (stage, fraction done)
+    """What the data of a request say; progress is called with (stage, fraction done).
 
     Raises:
         GearheatError: rig, card and data do not go together
@@ -133,11 +130,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
 
 
 def plan(inputs: PlanInputs, progress: Progress) -> Plan:
-    """What a campaign will tell, by exact first-order effects at the rig as in its file.
-
-    Args:
-        inputs: what the files of a request hold
-        progress: called with (stage, fraction done)
+    """What a campaign will tell, by exact first-order effects at the rig as in its file; progress as of `diagnose`.
 
     Raises:
         GearheatError: rig, card and points do not go together
@@ -153,11 +146,10 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
     problem = made.problem
     look = problem.look(np.zeros(problem.nz))
     noise = problem.noise(look)
-    candidates, _ = samples(tuple(f for f in made.formulas if not f.form.spread), changes(problem))
-    effects = problem.tangents(look.z, (), candidates)
-    effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    V = noise.covariance + look.jacobian @ look.jacobian.T
-    whole = Effects.of(candidates, effects, V)
+    white = White.of(noise.covariance + look.jacobian @ look.jacobian.T)
+    sized = [f for f in made.formulas if not f.form.spread]
+    first = screened(problem, look, (white, np.zeros(problem.m)), sized)  # as if the readings were as simulated
+    whole = Effects(first.candidates, first.white)
     common: dict[str, Any] = {
         "rig": made.scenario.name,
         "campaign": campaign.name,
@@ -171,8 +163,6 @@ def plan(inputs: PlanInputs, progress: Progress) -> Plan:
     progress("experiments", 0.6)
     if scatter := [c for c in request.causes if c not in whole.places]:  # they have no size to first order
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
-    places = [k for k, c in enumerate(candidates) if c.id in request.causes]
-    some = [candidates[k] for k in places]
     experiments = list_experiments(campaign, made.nominal.value)
-    found = simulate_design(problem, look, noise, some, effects[:, places], experiments)
+    found = simulate_design(problem, look, noise, first, request.causes, experiments)
     return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

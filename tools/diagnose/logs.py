@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -190,7 +190,7 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        warnings=tuple(filter(None, dict.fromkeys([_lacking(data), *(w for log in logs for w in log.warnings)]))),
+        warnings=tuple(filter(None, dict.fromkeys(_warnings(data)))),
     )
 
 
@@ -209,6 +209,14 @@ def check(data: Logs) -> None:
             )
     if problems:
         raise DataError(problems)
+
+
+def _warnings(data: Logs) -> Iterator[str]:
+    yield _lacking(data)
+    if data.reference and not data.logs[0].dated:
+        yield "the logs have no dates: those in question count as two weeks after the reference. Give dates if not"
+    for log in data.logs:
+        yield from log.warnings
 
 
 def _lacking(data: Logs) -> str:
@@ -239,7 +247,7 @@ def _gain(
 ) -> f.Gain | None:
     """Free-running error of spans of the logs, with the causes that are found without them."""
     own, data = known.filter, asked.windows
-    before = np.tile(known.levels.mean[0], (len(data.read), 1))
+    before = np.tile(asked.curves.base, (len(data.read), 1))
     after, chosen = before.copy(), Counter[str]()
     for k in range(FOLDS):
         rows = np.arange(k, spans.campaign.n, FOLDS)
@@ -274,7 +282,7 @@ def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
 ) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
     """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
-    own, level = known.filter, known.levels.mean[0]
+    own, level = known.filter, asked.curves.base
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
 

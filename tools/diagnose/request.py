@@ -61,22 +61,18 @@ class Request:
 
     def problems(self) -> list[str]:
         """What is wrong with the options, and files that do not exist."""
-        found = []
-        if self.data is None and not self.logs:
-            found.append("no data are given. Name a table of readings, or logs with --logs FILE.")
-        if not 0.0 < self.alpha < 1.0:
-            found.append(
-                f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
-            )
-        if not 1 <= self.causes <= MOST:
-            found.append(f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}.")
-        if self.seed < 0:
-            found.append(f"--seed {self.seed} is below zero. Give 0 or more.")
-        if self.series is not None and self.data is None:
-            found.append("--series needs the readings of the same tests. Name their table, too.")
-        if self.reference_series is not None and self.reference is None:
-            found.append("--reference-series needs the readings of the same tests. Give --reference, too.")
-        return found + _lost(self.files())
+        alpha = f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
+        causes = f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}."
+        lost = "needs the readings of the same tests."
+        checks = (
+            (self.data or self.logs, "no data are given. Name a table of readings, or logs with --logs FILE."),
+            (0.0 < self.alpha < 1.0, alpha),
+            (1 <= self.causes <= MOST, causes),
+            (self.seed >= 0, f"--seed {self.seed} is below zero. Give 0 or more."),
+            (self.data or not self.series, f"--series {lost} Name their table, too."),
+            (self.reference or not self.reference_series, f"--reference-series {lost} Give --reference, too."),
+        )
+        return [text for sound, text in checks if not sound] + _lost(self.files())
 
 
 @dataclass(frozen=True)
@@ -108,12 +104,7 @@ class Inputs:
 
 
 def read(request: Request, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()) -> Inputs:
-    """Read and check all files but logs and libraries.
-
-    Args:
-        request: files and options
-        written: option -> file that will be written
-        problems: that are known already
+    """Read and check all files but logs and libraries; `written` is option -> file, `problems` are known already.
 
     Raises:
         DataError: all problems of files and options at once

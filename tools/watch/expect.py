@@ -31,7 +31,7 @@ def expect(known: Fleet, window: Windows) -> Expected:
     """
     own, levels = known.filter, known.levels
     sd = np.array([k.sd for k in own.knobs])
-    z = levels.mean[0] + np.vstack([np.zeros(len(sd)), np.diag(sd)])
+    z = known.curves.back(levels.mean[0] + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
     shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, free=True, slopes=False).shown
     read = np.where(window.counts[0, :, None], window.read[0], np.nan)
     mean = means(np.where(np.isfinite(read), shown, np.nan))

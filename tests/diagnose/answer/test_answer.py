@@ -9,17 +9,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.model.errors import SolveError
+from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
-from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_alike, rank
+from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
-from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, scatters
+from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, gross_readings, scatters
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
+from gearheat.tools.diagnose.report import extension, phrases
 from gearheat.tools.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
@@ -92,6 +94,17 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     assert size_sd == pytest.approx(20, rel=0.3)
 
 
+def test_a_wrong_speed_is_among_the_given_readings_of_its_row_that_explain_it(clean: tuple[Setting, Found]) -> None:
+    sound = clean[1].problem
+    campaign = sound.data.campaign
+    speed, row = next(s.name for s in sound.data.given if s.kind == "speed"), 5
+    values = {**campaign.values, speed: campaign.values[speed] * np.where(np.arange(campaign.n) == row, 1.25, 1.0)}
+    found = weigh(Problem([sound.data.another(replace(campaign, values=values))], sound.day_sd), clean[1].formulas)
+    (one,) = gross_readings(found, decide(found).leader)
+    assert one.row == row + 1 and speed in (one.channel, *one.instead)
+    assert not one.instead or f"A wrong {one.instead[0]}" in phrases.gross(one)
+
+
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
     decision = decide(wrong[1])
     assert decision.verdict in ("explained", "ambiguous")
@@ -157,6 +170,20 @@ def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     changed = estimate.impacts(found.problem, decision.leader, wrong[0].nominal.ratios)
     oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
     assert changed[f"{oil}_K"].value == pytest.approx(size.value, rel=0.2)
+
+
+def test_an_instrument_has_its_own_size_and_what_it_seems_to_lose_is_apparent(wrong, monkeypatch) -> None:
+    found = wrong[1]
+    decision = decide(found)
+    one = decision.leader.fit.look.acting[0].formula
+    monkeypatch.setattr(estimate, "loss_means", lambda o, ratios: (np.ones(o.m), np.zeros(0)))
+    known = estimate.estimate_cause(found, TRUE, decision.members[TRUE])[0]
+    assert estimate.impacts(found.problem, decision.leader, {})["loss_Nm"].what == "loss"
+    monkeypatch.setattr(one, "form", replace(one.form, scale=0.2))
+    monkeypatch.setattr(Campaign, "sensor", lambda o, name: SimpleNamespace(kind="torque"))
+    told = estimate.estimate_cause(found, TRUE, decision.members[TRUE])[0]
+    assert (told.value, *told.ci95) == pytest.approx([0.2 * v for v in (known.value, *known.ci95)], rel=1e-5)
+    assert estimate.impacts(found.problem, decision.leader, {})["loss_Nm"].what == "apparent loss"
 
 
 def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Found]) -> None:
@@ -241,10 +268,15 @@ def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Set
         np.testing.assert_allclose(term.matrix[: problem.m, : problem.m], alone[term.name], atol=1e-12)
 
 
+def designed(found: Found, setting: Setting) -> Design:
+    """The campaign of a search with all experiments behind it."""
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    return simulate_design(found.problem, found.null.look, found.null.noise, found.first, CAUSES, tried)
+
+
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
-    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
-    made = extend_design(found, CAUSES, tried)
+    made = designed(found, setting)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
     for e in made.experiments:
@@ -286,7 +318,7 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
     assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
     assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
     assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
-    made = extend_design(wrong[1], CAUSES, list_experiments(campaign, setting.nominal.value))
+    made = designed(wrong[1], setting)
     weights = dict.fromkeys(CAUSES, 0.25)
     assert all(r.separation_after >= r.separation_before + 0.1 for r in rank(made, weights))
 
@@ -350,3 +382,9 @@ def test_calibration_goes_no_further_than_what_is_possible(clean: tuple[Setting,
     base = {path: data.plant.p[data.plant.place[path]] for path in nuisance.paths}
     low, high = data.limits[:, k]
     assert low == -6.0 and max(base.values()) * np.exp(nuisance.sd * high) == pytest.approx(1.0)
+    z = np.zeros(len(names))
+    z[k], z[names.index("convection")] = high, -4.0  # less area that radiates no less for it
+    told = extension.values(clean[1], z)
+    assert {path: told[path] for path in base} == dict.fromkeys(base, pytest.approx(1.0))
+    shown, less = (data.at(z - np.eye(len(z))[k] * d, []) for d in (0.0, 1e-3))
+    assert less.shown == pytest.approx(shown.shown, abs=1e-9) and not shown.by[:, k].any(), "it no longer follows"

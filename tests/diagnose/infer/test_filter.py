@@ -9,6 +9,7 @@ from pathlib import Path
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.model.machines.roles import Roles
 from gearheat.model.run.schedule import Schedule
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import load
@@ -17,7 +18,9 @@ from gearheat.scenarios.measured.logs import Log, read_log
 from gearheat.scenarios.measured.nominal import drive_by
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.diagnose.infer.logs import filter_of, independent
+from gearheat.tools.diagnose.infer.logs import filter_of
+from gearheat.tools.diagnose.infer.walk import curves, independent
+from gearheat.tools.diagnose.library.knobs import knobs
 from gearheat.tools.diagnose.model.logs import TAILS, Passed
 from gearheat.tools.diagnose.model.windows import windows
 
@@ -38,14 +41,15 @@ def record(
         seed: of inputs and noise
         only: readings, all if none is named
         thinner: by what factor the oil is thinner than that of the rig
-        changed: values of the machine that the rig has otherwise
+        changed: values of the machine that the rig has otherwise, and heat that enters from outside
     """
     sensors = [s for s in sensors_of(scenario, Card()) if s.role == "given" or not only or s.name in only]
     driven, rng = drive_by(scenario, sensors), np.random.default_rng(seed)
     if thinner != 1.0:
         oil = driven.spec.part("oil").values
         driven = driven.with_values({f"oil.{key}": float(oil[key]) / thinner for key in ("nu_40", "nu_100")})
-    flat = driven.with_values(changed).spec.flat()
+    inputs = {name: value for name, value in changed.items() if name.endswith("Q_flow_external")}
+    flat = driven.with_values({name: value for name, value in changed.items() if name not in inputs}).spec.flat()
     point = {path: value for path, value in driven.operating_point.items() if path in flat.index}
     corners = 12 * STEP * np.arange(N // 12 + 1)
     changes = {s.reads: rng.uniform(0.0, 1.0, len(corners)) for s in sensors if s.role == "given"}
@@ -54,7 +58,7 @@ def record(
         for name, share in changes.items()
     }
     times = STEP * np.arange(N)
-    rest = {name: value for name, value in point.items() if name not in given}
+    rest = {name: value for name, value in point.items() if name not in given} | inputs
     found = simulate(flat, Schedule(corners, given), values=rest, times=times)
     columns = {"time_s": times}
     for s in sensors:
@@ -159,14 +163,59 @@ def own_unit(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_a_bearing_whose_friction_the_rig_file_leaves_at_its_default_is_named(own_unit: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("zero", [0.0, 0.4])
+def test_a_bearing_whose_friction_the_rig_file_leaves_at_its_default_is_named(
+    own_unit: Path, tmp_path: Path, zero: float
+) -> None:
+    """Whatever the input torque's transducer shows without a torque [N.m]: it does so in the healthy log, too."""
     scenario = load(own_unit)
     assert "k_loss" not in scenario.spec.part("input_bearing_a").values
     past = record(tmp_path / "past.csv", scenario, 1)
     now = record(tmp_path / "now.csv", scenario, 2, changed={"input_bearing_a.k_loss": 4.0})
+    for path in (past, now):
+        names, table = path.read_text().splitlines()[0].split(","), np.loadtxt(path, delimiter=",", skiprows=1)
+        table[:, names.index("T_input_Nm")] += zero
+        np.savetxt(path, table, "%.8g", ",", header=",".join(names), comments="")
     found = gh.diagnose(None, own_unit, logs=now, reference_logs=past, quick=True)
     assert found.answers[0].causes == (("losses.bearing_preload",),)
     assert found.causes[0].parameters[0].value == pytest.approx(np.log(4.0), abs=0.3)
+    assert [w for w in found.warnings if "have no dates" in w]
+
+
+def test_heat_from_outside_is_named(own_unit: Path, tmp_path: Path) -> None:
+    scenario = load(own_unit)
+    past = record(tmp_path / "past.csv", scenario, 1)
+    now = record(tmp_path / "now.csv", scenario, 2, changed={"wall.Q_flow_external": 80.0})
+    found = gh.diagnose(None, own_unit, logs=now, reference_logs=past, quick=True)
+    assert found.answers[0].causes == (("heat.external_source",),)
+    heat = next(cause for cause in found.causes if cause.id == "heat.external_source")
+    assert heat.parameters[0].value == pytest.approx(80.0, rel=0.2)
+
+
+def test_what_cannot_differ_is_no_knob(own_unit: Path) -> None:
+    """A torque without a zero error, by the card, and heat where the rig has no loss to compare it with."""
+    roles = Roles.of((scenario := load(own_unit)).spec)
+    sensors = [replace(s, offset_sd=0.0) for s in sensors_of(scenario, Card())]
+    assert all(k.sd > 0 for k in knobs(roles, sensors, np.nan))
+    assert len(knobs(roles, sensors, np.nan)) < len(knobs(roles, sensors, 100.0))
+
+
+def test_what_factors_do_curves(own_unit: Path, tmp_path: Path) -> None:
+    """A loss heats in proportion to its factor, and what lies before a conductance to one over it."""
+    log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
+    own, knobs = filter_of(scenario, log)
+    bent, names = curves(own, windows([log], own.given, own.read)), [k.name for k in knobs]
+    z = np.zeros((2, len(knobs)))
+    loss, oil_wall, gain = (names.index(n) for n in ("input_bearing_a: loss", "oil_wall: conductance", "n_input: gain"))
+    z[:, [loss, oil_wall, gain]] = np.log([[0.5] * 3, [4.0] * 3])
+    does, slope = bent.at(z)
+    assert does[:, loss] == pytest.approx([-0.5, 3.0], rel=0.15)  # it warms the oil besides, which thins it
+    assert slope[:, loss] == pytest.approx([0.5, 4.0], rel=0.3)
+    assert does[:, oil_wall] == pytest.approx([-1.0, 0.75], rel=0.2)
+    assert does[:, gain] == pytest.approx(z[:, gain])
+    np.testing.assert_allclose(bent.back(does), z, atol=0.01)
+    about = bent.about(does[1])
+    np.testing.assert_allclose(about.at(z - about.base)[0], does - does[1], atol=0.02)
 
 
 def test_steps_of_a_sample_follow_what_is_fast(own_unit: Path, tmp_path: Path) -> None:

@@ -112,6 +112,11 @@ def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: fl
     assert value == pytest.approx(size, abs=high - low + 0.2 * abs(size))
 
 
+def test_what_switches_has_no_curve(farm: Farm) -> None:
+    curved = {farm.knobs[j].name for j in farm.fleet.curves.of}
+    assert "bearing_1_loss: loss" in curved and "cooler: conductance" not in curved
+
+
 def test_what_logs_say_of_a_cause_is_free_of_its_prior(farm: Farm) -> None:
     found = farm.asked(*WORN).found
     assert found.log_bayes_factor(["cooling.cooler"]) > 3

@@ -19,7 +19,7 @@ from gearheat.tools.diagnose.library.registry import library
 from gearheat.tools.diagnose.setting import DOES
 
 #: All that may be known of the rows of a campaign.
-ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "logs", "still: T_wall", "still: T_oil"})
+ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "still: T_wall", "still: T_oil"})
 
 
 @dataclass(frozen=True)

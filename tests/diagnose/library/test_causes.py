@@ -86,6 +86,20 @@ def test_oil_beside_the_main_bath_is_no_joint(case):
     assert not any("splash" in name for name in forms["cooling.contact"])
 
 
+@pytest.mark.parametrize(("power", "ways"), [(1e-4, ["turning slower", "clogged"]), (0.0, [""])])
+def test_a_fan_that_turns_slower_takes_less_power_and_a_clogged_one_as_much(case, power, ways):
+    c = case("helical_two_stage")
+    part, nets = PartSpec("fan", "ShaftFan", {"k_v": 0.02, "k": power}), [("input.flange", "fan.shaft")]
+    roles = Roles.of(c.scenario.spec.with_parts([part], nets))
+    cause = next(x for x in library(roles, c.ranges, c.sensors) if x.id == "cooling.fan")
+    forms = {f.name: f for f in cause.forms if f.name in (*ways, "")}
+    assert list(forms) == ways and sum(f.weight for f in cause.forms) == pytest.approx(1.0)
+    row, theta = Row(base={"fan.k_v": 0.02, "fan.k": power}, sensors={}), {"ln_factor": np.log(0.4)}
+    found = [{path: float(v) for path, v in f.values(theta, row).items()} for f in forms.values()]
+    assert all(values["fan.k_v"] == pytest.approx(0.008) for values in found)
+    assert [values.get("fan.k", power) for values in found] == pytest.approx([0.16e-4, 1e-4] if power else [0.0])
+
+
 @pytest.mark.parametrize("rig", RIGS)
 def test_symbols_and_arrays_of_rows_give_the_same(case, rig):
     c, rng = case(rig), np.random.default_rng(1)
@@ -199,15 +213,14 @@ def test_classes_that_count_as_one_answer(case):
 
 
 def test_what_is_not_known_of_the_rows_is_left_out(without):
-    everything = without("planetary", "order", "dwell", "mounting", "humidity", "logs")
+    everything = without("planetary", "order", "dwell", "mounting", "humidity")
     for known, ids in {
         "humidity": ["cooling.humidity"],
         "dwell": ["procedure.not_stationary"],
         "mounting": ["sensor.torque.mounting"],
-        "logs": ["heat.parked", "sensor.wall_temp.lag"],
         "order": ["procedure.order", "sensor.torque.drift", "sensor.oil_temp.since"],
     }.items():
-        others = {"order", "dwell", "mounting", "humidity", "logs"} - {known}
+        others = {"order", "dwell", "mounting", "humidity"} - {known}
         assert set(ids) <= set(everything) and not set(ids) & set(without("planetary", *others))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.library.cause import Row, as_array
-from gearheat.tools.diagnose.library.probes import BODY
+from gearheat.tools.diagnose.library.sensors import BODY
 
 ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
 DIRECTION = np.array([1.0, -1.0] * 3)
@@ -56,6 +56,7 @@ def test_the_zero_of_a_transducer_is_the_same_on_magnitudes_of_both_directions(p
     wrong = shown(planetary, cause, form_of(cause, "T_sun"), 4.0)["T_sun"]
     share = planetary.ranges.mid["T_sun"] / planetary.ranges.mid["T_carrier"]
     assert wrong == pytest.approx(np.full(6, 4.0 * share))
+    assert form_of(cause, "T_sun").scale == pytest.approx(share) and form_of(cause, "T_carrier").scale == 1.0
 
 
 def test_a_zero_that_moves_may_belong_to_the_signed_value(planetary):

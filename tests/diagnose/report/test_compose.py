@@ -5,12 +5,14 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from gearheat.scenarios.load import load
 from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
+from gearheat.tools.diagnose.answer.evidence import RepeatedPoint
 from gearheat.tools.diagnose.answer.quality import list_repeats
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
@@ -104,7 +106,6 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
     data = made.found.problem.data.campaign
     again = {s: v[[0, 1, 2, 3, 0, 1]] for s, v in data.values.items()}
     oil = next(s.name for s in data.read if s.kind == "oil_temp")
-    again[oil] = again[oil] + np.array([0, 0, 0, 0, 1.0, 0.0])
     first = [0, 1, 2, 3, 0, 1]
     short = replace(
         data, values=again, test=np.array([0, 0, 1, 1, 2, 2]), order=np.array([1.0, 2.0, 3.0]),
@@ -112,14 +113,24 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
         mounting=("",) * 3, T_start=data.T_start[:3], room_start=data.room_start[:3], humidity=data.humidity[:3],
         date=("",) * 3, lines=data.lines[first], points=data.points[first],
     )  # fmt: skip
-    told = {p.channel: p for p in list_repeats(short)}
-    assert [r.test for r in told[oil].repeats] == [1, 3]
-    assert [r.sum for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
-    assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
-    assert told[oil].condition.startswith("A, ")
-    assert "rpm" in told[oil].condition
-    again[oil][[0, 1]] = np.nan  # its cells are empty
-    assert {p.channel for p in list_repeats(short)} == {s.name for s in data.read} - {oil}
+    o = made.found.problem.data.another(short)
+    mine = o.kind == [s.name for s in o.read].index(oil)
+    shown = o.measured + o.row - np.where(mine & (o.row == 4), 1.0, 0.0) - np.where(o.row > 3, 4, 0)  # another room
+
+    def told(*aside: int) -> dict[str, RepeatedPoint]:
+        problem = SimpleNamespace(data=o, measured=o.measured, own=slice(None), entries_aside=list(aside))
+        found = SimpleNamespace(problem=problem, null=SimpleNamespace(look=SimpleNamespace(shown=shown)))
+        return {p.channel: p for p in list_repeats(found)}
+
+    one = told()[oil]
+    assert [r.test for r in one.repeats] == [1, 3]
+    assert [r.sum for r in one.repeats] == pytest.approx([-0.25, 0.25])
+    assert [r.difference for r in one.repeats] == pytest.approx([-0.25, 0.25])
+    assert all(r.sum == pytest.approx(0.0) for name, p in told().items() if name != oil for r in p.repeats)
+    assert one.condition.startswith("A, ")
+    assert "rpm" in one.condition
+    gross = np.flatnonzero(mine & (o.row < 2))
+    assert set(told(*gross)) == {s.name for s in o.read} - {oil}, "what is set aside tells nothing"
 
 
 def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:

@@ -117,8 +117,8 @@ def test_a_value_far_from_its_file_is_in_the_verdict_of_clean_data() -> None:
     off = NuisanceOff(name="bearing loss", z=2.4, factor=1.36, paths=("bearing_a.k", "bearing_a.f"))
     said = clean(data_quality=DataQuality(nuisances=(off,))).says
     assert said.verdict == (
-        "No cause is needed, but the rig differs from its file: bearing loss of bearing_a (1.36 times that of the"
-        " file, 2.4 prior standard deviations up)."
+        "The data agree with the model only with values far from those of its file: bearing loss of bearing_a (1.36"
+        " times that of the file, 2.4 prior standard deviations up)."
     )
     assert "Nothing" not in said.do
     assert said.do.startswith("Check these values of the rig")
@@ -128,6 +128,26 @@ def test_nothing_and_something_never_both_have_more_than_half() -> None:
     assert "nothing and something both have more than half" in contradictions(
         clean().model_copy(update={"causes": (cause(AIR, 0.6),)})
     )
+
+
+@pytest.mark.parametrize("nothing", [0.0, 0.07, 0.1, 0.31, 0.49])
+@pytest.mark.parametrize("kind", [ambiguous, unexplained])
+def test_something_is_wrong_or_may_be_as_nothing_is_probable(kind, nothing: float) -> None:
+    known = kind().hypotheses
+    left = tuple(h.model_copy(update={"probability": (1 - nothing) * h.probability}) for h in known if h.causes)
+    found = kind(hypotheses=(*left, Hypothesis(causes=(), probability=nothing)))
+    several = found.model_copy(update={"answers": (Answer(causes=((CHURNING,), (AIR,), (OFFSET,)), probability=0.5),)})
+    single = found.model_copy(update={"answers": found.answers[:1]})
+    for said in (with_words(one).says.verdict for one in (found, several, single)):
+        assert ("may be wrong" in said or "may act" in said) == (nothing >= 0.1)
+        assert f", or nothing is wrong ({100 * nothing:.0f} %)" in said or nothing < 0.1
+
+
+def test_a_runner_up_is_in_the_verdict_of_no_cause() -> None:
+    known = (Hypothesis(causes=(), probability=0.52), Hypothesis(causes=(AIR,), probability=0.47))
+    said = with_words(clean().model_copy(update={"hypotheses": known, "causes": (cause(AIR, 0.47),)})).says
+    assert said.verdict.endswith("within the stated accuracies. Not excluded: cooling by the air (47 %).")
+    assert said.do == "To test what is not excluded: blow at the housing."
 
 
 def test_what_the_calibrated_rig_leaves_comes_first() -> None:

@@ -45,6 +45,10 @@ def test_a_torque_of_the_other_sign(read, helical, planetary):
     assert "its sign is the other one. Turn it, or say magnitude = true" in problems(
         read, "helical_two_stage", columns, '[sensors.T_input_Nm]\nreads = "input.tau"\n'
     )
+    mixed = {**columns, "T_input_Nm": [v * w for v, w in zip(columns["T_input_Nm"], [1, -1] * 3, strict=True)]}
+    assert "its sign is the other one in 3 of 6 rows" in problems(
+        read, "helical_two_stage", mixed, '[sensors.T_input_Nm]\nreads = "input.tau"\n'
+    )
     turned = {**planetary, "direction": [3 - d for d in planetary["direction"]]}
     assert "efficiency of 1.0" in problems(read, "planetary", turned)
 

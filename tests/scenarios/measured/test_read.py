@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.card import Card, read_card
-from gearheat.scenarios.measured.nominal import Nominal
+from gearheat.scenarios.measured.nominal import Nominal, model_values
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.shafts import torques
 from gearheat.scenarios.measured.table import Sensor
@@ -136,6 +136,53 @@ def test_direction_follows_the_sign_of_a_signed_torque(read, helical):
     columns["T_output_Nm"] = [*helical["T_output_Nm"], *(-v for v in helical["T_output_Nm"])]
     found = read("helical_two_stage", columns)
     assert list(found.direction) == [1] * 6 + [-1] * 6
+
+
+#: Whether speed, load and torque at the input turn their sign in the second direction, None without the column; and
+#: whether a column says the direction.
+BOTH_WAYS = {
+    "the model's signs": (True, True, True, False),
+    "a load without a sign": (True, False, True, False),
+    "no torque has a sign": (True, False, False, False),
+    "signed speeds alone": (True, False, None, False),
+    "signed speeds and a direction": (True, False, False, True),
+    "signed speeds, a direction, one torque": (True, False, None, True),
+    "a direction alone": (False, False, False, True),
+}
+
+
+@pytest.mark.parametrize("way", BOTH_WAYS)
+def test_both_directions_of_rotation_have_the_signs_of_the_model(read, helical, way):
+    *signs, told = BOTH_WAYS[way]
+    columns = {c: [*v, *v] for c, v in helical.items()}
+    second = np.repeat([1.0, -1.0], 6)
+    load = np.abs(columns["T_output_Nm"])
+    columns["T_input_Nm"] = load / 12.45 / 0.97
+    if told:
+        columns["direction"] = np.where(second < 0, 2, 1)
+    for column, sign in zip(("n_input_rpm", "T_output_Nm", "T_input_Nm"), signs, strict=True):
+        if sign is None:
+            del columns[column]
+        else:
+            columns[column] = np.abs(columns[column]) * (second if sign else 1.0)
+    if signs[1]:
+        columns["T_output_Nm"] *= -1.0
+    card = "sensors.T_output.magnitude = true\n" * (not signs[1])
+    card += '[sensors.T_input_Nm]\nreads = "input.tau"\n' * (signs[2] is not None)
+    found = read("helical_two_stage", columns, card)
+    model = model_values(found)
+    assert list(found.direction) == list(second)
+    assert list(np.sign(model["input.w"])) == list(second) == list(-np.sign(model["output.tau"]))
+    assert "input.tau" not in model or list(np.sign(model["input.tau"])) == list(second)
+
+
+def test_losses_tell_a_direction_of_the_power_from_one_of_the_rotation(read, helical):
+    columns = {c: [*v, *v] for c, v in helical.items()}
+    load = columns["T_output_Nm"] = np.abs(columns["T_output_Nm"])
+    columns |= {"direction": np.repeat([1, 2], 6), "T_input_Nm": load / 12.45 * np.repeat([1.03, 0.97], 6)}
+    card = 'sensors.T_output.magnitude = true\n[sensors.T_input_Nm]\nreads = "input.tau"\n'
+    model = model_values(read("helical_two_stage", columns, card))
+    assert (model["input.w"] > 0).all() and list(np.sign(model["input.tau"])) == [1.0] * 6 + [-1.0] * 6
 
 
 def test_dwell_stop_and_start_come_from_the_card_where_no_column_says_them(read, planetary):

@@ -76,8 +76,8 @@ def channel(sensor: Sensor) -> Channel:
     )
 
 
-def levels(values: np.ndarray) -> list[np.ndarray]:
-    """Rows (k,) of each level, lowest first: values with no gap between them."""
+def levels(values: np.ndarray, gap: float = GAP) -> list[np.ndarray]:
+    """Rows (k,) of each level, lowest first: values with no gap between them, as a share of their range."""
     order = np.argsort(values, kind="stable")
-    gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
+    gaps = np.diff(values[order]) > gap * max(float(np.ptp(values)), 1e-12)
     return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -13,7 +14,7 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
 from .decide import Chance, Decision
-from .design import Effects, extend_design, find_alike, rank
+from .design import Effects, find_alike, rank, simulate_design
 from .experiments import list_experiments
 
 #: Hypotheses that are listed.
@@ -24,6 +25,8 @@ LISTED = 0.005
 JUDGED = 4
 #: The least weight of one.
 LEAST = 0.02
+#: Of errors of several instruments of a kind.
+PROPORTION = ", of the one that reads most, others in proportion"
 #: Experiments that are listed.
 TRIED = 6
 
@@ -31,10 +34,12 @@ TRIED = 6
 def common(made: Setting, found: Found, decision: Decision) -> dict[str, Any]:
     """What the findings on readings and on logs have alike: the verdict, and what it follows from."""
     told = sets(made.causes, found, decision) if decision.verdict != "consistent" else ()
+    # the most probable ones, nothing always among them
+    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
     return {
         "verdict": decision.verdict,
-        "hypotheses": hypotheses(decision),
-        "answers": answers(decision),
+        "hypotheses": tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed),
+        "answers": tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers),
         "causes": causes(made, found, decision),
         "remainder": remainder(found, decision),
         "sets": told,
@@ -42,37 +47,18 @@ def common(made: Setting, found: Found, decision: Decision) -> dict[str, Any]:
     }
 
 
-def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
-    """The most probable ones, nothing always among them."""
-    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
-    return tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed)
-
-
-def answers(decision: Decision) -> tuple[findings.Answer, ...]:
-    """What the verdict names."""
-    return tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers)
-
-
 def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
     """All causes, most probable first."""
-    smallest = estimate.find_detectable(found)
-    told = []
-    for cause in (*made.causes, None):
-        id = cause.id if cause else findings.UNEXPLAINED
-        chance = decision.marginal.get(id, Chance(0.0, 0.0))
-        known: dict[str, Any] = {}
-        if cause is not None:
-            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
-            sizes = [size for size in (smallest.get(id), cause.size.sd) if size is not None]
-            unit, (*smallest_of, usual) = estimate.convert(cause.size, sizes)
-            known |= {
-                "usual": usual,
-                "unit": unit,
-                "meaning": cause.size.doc,
-                "detectable": next(iter(smallest_of), None),
-            }
-            known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
-        told.append(findings.Cause(id=id, **asdict(chance), **known))
+    smallest, chances = estimate.find_detectable(found), defaultdict(lambda: Chance(0.0, 0.0), decision.marginal)
+    told = [findings.Cause(id=findings.UNEXPLAINED, **asdict(chances[findings.UNEXPLAINED]))]
+    for cause in made.causes:
+        known: dict[str, Any] = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
+        known["meaning"] = cause.size.doc + (PROPORTION if any(f.scale != 1 for f in cause.forms) else "")
+        known["unit"], (known["usual"],) = estimate.convert(cause.size, [cause.size.sd])
+        if cause.id in smallest:
+            _, (known["detectable"],) = estimate.convert(cause.size, [smallest[cause.id]])
+        known |= _sized(made, cause.id, found, decision) if chances[cause.id].probability > LISTED else {}
+        told.append(findings.Cause(id=cause.id, **asdict(chances[cause.id]), **known))
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
 
 
@@ -139,5 +125,6 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = extend_design(found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    made = simulate_design(found.problem, found.null.look, found.null.noise, found.first, causes, tried)
     return tuple(rank(made, weights)[:TRIED])

@@ -213,12 +213,9 @@ def _class(cause: str, best: Hypothesis, members: Sequence[Member], found: Found
 
 
 def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -> float:
-    """Chi-square p of what a hypothesis leaves: whatever its scatter leaves free takes a degree of freedom.
+    """Chi-square p of what a hypothesis leaves in some readings (k,), all if None.
 
-    Args:
-        found: the search
-        h: one of its hypotheses, with its remainder
-        entries: of which readings, all if None (k,)
+    Whatever its scatter leaves free takes a degree of freedom.
     """
     problem, fit = found.problem, h.fit
     kept = np.ones(problem.m, dtype=bool)

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ..infer.evidence import White
-from ..infer.found import Found
 from ..infer.problem import Acting, Look, Noise, Problem, priors
+from ..infer.screen import Screen
 from ..model.entries import Seen
 from ..model.noise import terms
 from ..model.observe import Observed
@@ -32,11 +32,6 @@ class Effects:
 
     candidates: tuple[Acting, ...]
     white: np.ndarray
-
-    @staticmethod
-    def of(candidates: Sequence[Acting], effects: np.ndarray, covariance: np.ndarray) -> Effects:
-        """From effects (m, k) and the covariance (m, m) of readings without a cause."""
-        return Effects(tuple(candidates), White.of(covariance)(effects))
 
     @cached_property
     def places(self) -> Mapping[str, np.ndarray]:
@@ -80,10 +75,8 @@ def find_alike(effects: Effects, cause: str, size: float, like: Mapping[str, str
     """The set that a design cannot tell from a cause, declared classes included; None where it stands alone.
 
     Args:
-        effects: of all causes
-        cause: its id
+        effects: of all causes, `like` their classes and why
         size: in half widths of its prior
-        like: cause -> class and why
     """
     if cause not in effects.places:
         return None
@@ -126,7 +119,7 @@ class Design:
     def seen(self, *done: str) -> Effects:
         """The causes in standard deviations, with some experiments done."""
         rows = np.logical_or.reduce([self.parts[""], *(self.parts[name] for name in done)])
-        return Effects.of(self.candidates, self.effects[rows], self.covariance[np.ix_(rows, rows)])
+        return Effects(self.candidates, White.of(self.covariance[np.ix_(rows, rows)])(self.effects[rows]))
 
     def distances(self, *done: str) -> dict[Pair, float]:
         """Distance of each pair of causes, with some experiments done."""
@@ -139,20 +132,13 @@ def simulate_design(
     problem: Problem,
     look: Look,
     noise: Noise,
-    candidates: Sequence[Acting],
-    effects: np.ndarray,
+    first: Screen,
+    causes: Collection[str],
     experiments: Sequence[Experiment],
 ) -> Design:
-    """A campaign with experiments behind it.
-
-    Args:
-        problem: the rig and its campaigns
-        look: at the rig as calibrated, without a cause
-        noise: scatter there
-        candidates: forms of the causes
-        effects: theirs in the campaign (m, k)
-        experiments: to try
-    """
+    """A campaign with experiments behind it, for some causes; look, noise and first screen are without a cause."""
+    places = [k for k, c in enumerate(first.candidates) if c.id in causes]
+    candidates = [first.candidates[k] for k in places]
     runs = {e.id: r for e in experiments if e.tests and (r := _run(problem.data, look, candidates, e)) is not None}
     checks = [(e.id, check) for e in experiments for check in e.checks]
     campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
@@ -164,7 +150,8 @@ def simulate_design(
     known = {t.name: t.columns[:, 0] for t in joint if t.columns is not None and t.name.startswith("tolerance of ")}
     sensors = {s.name: s.offset_sd for s in problem.data.campaign.sensors}
     V = _with_checks(V, known, [check for _, check in checks], sensors)
-    rows = [effects, *(e for _, _, e in runs.values()), *(_of_check(problem.data, c, candidates) for _, c in checks)]
+    checked = (_of_check(problem.data, c, candidates) for _, c in checks)
+    rows = [first.effects[:, places], *(e for _, _, e in runs.values()), *checked]
     owner = np.repeat(["", *runs, *(id for id, _ in checks)], [len(r) for r in rows])
     possible = tuple(e for e in experiments if not e.tests or e.id in runs)
     parts = {name: owner == name for name in ["", *(e.id for e in possible)]}
@@ -226,21 +213,8 @@ def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.nda
     return found
 
 
-def extend_design(found: Found, causes: Collection[str], experiments: Sequence[Experiment]) -> Design:
-    """The design of a search's data for some causes, with experiments behind it."""
-    places = [k for k, c in enumerate(found.first.candidates) if c.id in causes]
-    candidates = [found.first.candidates[k] for k in places]
-    look, noise = found.null.look, found.null.noise
-    return simulate_design(found.problem, look, noise, candidates, found.first.effects[:, places], experiments)
-
-
 def rank(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
-    """Experiments by what they add to the distances between causes, weighted by how probable both are.
-
-    Args:
-        made: the design
-        weights: cause -> probability; pairs of them are judged
-    """
+    """Experiments by what they add to the distances between all pairs of causes, weighted by how probable both are."""
     before, found = made.distances(), []
     for experiment in made.experiments:
         after = made.distances(experiment.id)

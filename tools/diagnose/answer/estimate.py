@@ -41,6 +41,13 @@ def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     return x, covariance
 
 
+def _of_cause(problem: Problem, h: Hypothesis, cause: str) -> tuple[np.ndarray, np.ndarray]:
+    """The part of the posterior that is of a cause and what follows it: its size, its shapes."""
+    begin = Vector(problem, h.fit.look.acting).sizes[h.fit.causes.index(cause)]
+    x, covariance = posterior(problem, h)
+    return x[begin:], covariance[begin:, begin:]
+
+
 def loose_variance(fit: Fit) -> np.ndarray:
     """Variances (M,) by the scatter of readings, inputs and days as found, without tolerances."""
     loose = zip(fit.noise.scales, fit.noise.loose, strict=True)
@@ -53,42 +60,36 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
     if not acting or cause not in members[0][0].fit.causes:
         return _spread(found, cause, members)
-    pairs, weights = [], []
     best = max(acting, key=lambda member: member[1])[0]
-    one = best.fit.look.acting[best.fit.causes.index(cause)]
-    for h, p in acting:
-        k = h.fit.causes.index(cause)
-        if h.fit.look.acting[k].formula.form.name == one.formula.form.name:
-            place = Vector(found.problem, h.fit.look.acting).sizes[k]
-            x, covariance = posterior(found.problem, h)
-            pairs.append((x[place], covariance[place, place]))
-            weights.append(p)
-    w, (m, variances) = np.array(weights) / sum(weights), np.transpose(pairs)
+    alike = [(h, p) for h, p in acting if h.form(cause) == best.form(cause)]
+    sizes = [(x[0], covariance[0, 0]) for x, covariance in (_of_cause(found.problem, h, cause) for h, _ in alike)]
+    weights = [p for _, p in alike]
+    w, (m, variances) = np.array(weights) / sum(weights), np.transpose(sizes)
     centre = float(w @ m)
     spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
+    one = best.fit.look.acting[best.fit.causes.index(cause)]
     s = one.formula.cause.size
-    size = _told(s, [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)])
-    return (size, *_shapes(found.problem, best, one))
+    ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
+    return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best, one))
 
 
-def _told(of: Shape | Size, ends: Sequence[float]) -> Estimate:
-    """A size or a shape with its interval: low end, value, high end."""
-    unit, (low, value, high) = convert(of, ends)
+def _told(of: Shape | Size, ends: Sequence[float], scale: float = 1.0) -> Estimate:
+    """A size or a shape with its interval: low end, value, high end, of what has it times a scale."""
+    unit, (low, value, high) = convert(of, [scale * end for end in ends])
     bound = at_bound(ends[1], of.low, of.high)
     return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)
 
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
     """The shapes of a cause in a hypothesis."""
-    begin = Vector(problem, h.fit.look.acting).sizes[h.fit.causes.index(one.id)]
-    x, covariance = posterior(problem, h)
+    x, covariance = _of_cause(problem, h, one.id)
     found = []
     for k, shape in enumerate(one.formula.form.shapes, start=1):
-        sd = min(float(np.sqrt(covariance[begin + k, begin + k])), 1.0)
+        sd = min(float(np.sqrt(covariance[k, k])), 1.0)
         values = []
         for step in (-WIDE * sd, 0.0, WIDE * sd):
             t = one.t.copy()
-            t[k] = np.clip(x[begin + k] + step, -3.0, 3.0)
+            t[k] = np.clip(x[k] + step, -3.0, 3.0)
             values.append(one.formula.theta(t)[shape.name])
         found.append(_told(shape, values))
     return found
@@ -121,8 +122,9 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     whites = [White.of(V + size**2 * one) for size in SPREADS]
     logs = [white.log_density(white(r)) for white in whites]
     share = np.cumsum(np.exp(np.array(logs) - np.logaddexp.reduce(logs)))
-    of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    told = _told(of, [of.sd * float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)])
+    mine = next(f for f in found.formulas if (f.cause.id, f.form.name) == (cause, extra.form))
+    of, ends = mine.cause.size, [float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)]
+    told = _told(of, [of.sd * end for end in ends], mine.form.scale)
     doc = of.doc if "standard deviation" in of.doc else f"standard deviation of: {of.doc}"
     return (told.model_copy(update={"doc": doc, "at_bound": ""}),)
 
@@ -138,7 +140,7 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
             scale = np.logaddexp.reduce(list(logs.values()))
             own = {name: float(np.exp(value - scale)) for name, value in logs.items()}
         else:
-            own = {h.fit.look.acting[h.fit.causes.index(cause)].formula.form.name: 1.0}
+            own = {h.form(cause): 1.0}
         for name, share in own.items():
             total[name] = total.get(name, 0.0) + p * share
     whole = sum(total.values()) or 1.0
@@ -171,11 +173,7 @@ def impacts(
 ) -> dict[str, findings.Impact]:
     """Mean change of each compared sensor, and of the loss, by the causes of a hypothesis, or by one of them.
 
-    Args:
-        problem: data and model
-        h: the hypothesis
-        ratios: as `loss_means` takes them
-        only: id of the one cause
+    Ratios are those of `loss_means`.
     """
     fit, o = h.fit, problem.data
     moved = [a for a in fit.look.acting if only is None or a.id == only]
@@ -199,9 +197,11 @@ def impacts(
         if (mine := o.kind == i).any():
             weights = channels.difference(s, 1.0) * mine / mine.sum()
             add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
+    wrong = {o.campaign.sensor(name).kind for a in moved for name in (*a.formula.read, *a.formula.given)}
+    loss = "loss" if wrong.isdisjoint(("torque", "speed")) else "apparent loss"
     for (name, unit), weights in zip(LOSS.items(), loss_means(o, ratios) or (), strict=False):
         if len(weights):
-            add(name, weights, unit, "loss")
+            add(name, weights, unit, loss)
     return told
 
 
@@ -209,7 +209,6 @@ def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np
     """Weights of the readings (m,) in the mean loss torque [N.m] and in the mean loss [W]; None without a torque.
 
     Args:
-        o: the data
         ratios: speed of each shaft end over that of the one at which the loss is stated
     """
     torque, power = np.zeros(o.m), np.zeros(o.m)

@@ -34,6 +34,7 @@ class GrossReading(Model):
     expected: Number | None = None
     unit: str = ""
     set_aside: bool = True
+    instead: tuple[str, ...] = Field(default=(), description="given channels of the row that explain it as well")
 
 
 class NuisanceOff(Model):
@@ -73,7 +74,7 @@ class Repeat(Model):
 
 
 class RepeatedPoint(Model):
-    """A point measured several times, in running order: deviations from its mean, temperatures over the room."""
+    """A point measured several times, in running order: measured less calibrated, less the mean of that."""
 
     condition: str
     channel: str

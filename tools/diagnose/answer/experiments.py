@@ -101,26 +101,13 @@ def list_experiments(campaign: Campaign, usual: Callable[[str], float]) -> tuple
         campaign: the data
         usual: value of a path at the operating point of the rig; no speed beyond this and the campaign's is proposed
     """
-    speed = _first(campaign, "speed")
+    speed = campaign.driving("speed")
     fastest = abs(usual(speed.reads)) if speed else 0.0
     return (*_tests(campaign, fastest), *_checks(campaign))
 
 
-def range_of(campaign: Campaign, kind: str) -> tuple[float, float] | None:
-    """Least and largest magnitude of the first given sensor of a kind; None without one."""
-    sensor = _first(campaign, kind)
-    if sensor is None:
-        return None
-    values = np.abs(campaign.values[sensor.name])
-    return float(np.nanmin(values)), float(np.nanmax(values))
-
-
-def _first(campaign: Campaign, kind: str) -> Sensor | None:
-    return next((s for s in campaign.given if s.kind == kind), None)
-
-
 def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
-    speed, load, room = (range_of(campaign, kind) for kind in ("speed", "torque", "ambient"))
+    speed, load, room = (campaign.range_of(kind) for kind in ("speed", "torque", "ambient"))
     speeds = [{"speed": n} for n in dict.fromkeys(speed)] if speed else [{}]
     loads = [{"torque": tau} for tau in dict.fromkeys(load)] if load else [{}]
     corners = tuple(n | tau for n in speeds for tau in loads)
@@ -160,9 +147,8 @@ def _checks(campaign: Campaign) -> Iterator[Experiment]:
         typical = float(np.nanmean(np.abs(campaign.values[s.name])))
         if s.kind == "ambient":
             check = Check(s.name, (typical,) * 4, s.repeat_sd, THERMOMETER)
-            yield Experiment(
-                "room_probe", "a reference thermometer for the room, away from the machine", checks=(check,)
-            )
+            text = "a reference thermometer for the room, away from the machine"
+            yield Experiment("room_probe", text, checks=(check,))
         if s.kind == "speed":
             check = Check(s.name, (typical,) * 2, STROBOSCOPE * typical)
             yield Experiment("stroboscope", "the speed by a stroboscope", checks=(check,))
@@ -183,7 +169,7 @@ def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
     values = {s.name: np.full(n * k, float(np.nanmean(campaign.values[s.name]))) for s in campaign.read}
     for s in campaign.given:
         own = campaign.values[s.name][rows]
-        main = _first(campaign, s.kind)
+        main = campaign.driving(s.kind)
         scale = [test.get(s.kind) for test in experiment.tests]
         usual = float(np.nanmean(np.abs(campaign.values[main.name][rows]))) if main else 1.0
         wanted = [own if v is None else own + v - usual if s.kind == "ambient" else own * v / usual for v in scale]
@@ -206,12 +192,7 @@ def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
 
 
 def planned_campaign(scenario: Scenario, card: Card, points: Campaign | None) -> Campaign:
-    """Conditions with the readings of the rig as in its file.
-
-    Args:
-        scenario: the rig
-        card: sensors and protocol
-        points: conditions; a grid of 4 x 4 points without them
+    """Conditions, a grid of 4 x 4 points where none are given, with the readings of the rig as in its file.
 
     Raises:
         DataError: the rig has no sensor, or cannot be run at any point
@@ -253,11 +234,11 @@ def _answered(campaign: Campaign, nominal: Nominal) -> Campaign:
     """The campaign with steady readings of the model where it has none."""
     missing = [s for s in campaign.read if s.name not in campaign.values]
     found = {s.name: np.full(campaign.n, np.nan) for s in missing}
+    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
     for row in range(campaign.n):
-        signs = {s.name: float(s.sign(campaign.direction[row : row + 1])[0]) for s in campaign.sensors}
-        at = nominal.at({s.reads: signs[s.name] * float(campaign.values[s.name][row]) for s in campaign.given})
+        at = nominal.at({path: float(column[row]) for path, column in given.items()})
         for s in missing:
-            found[s.name][row] = signs[s.name] * at[s.reads] if at is not None else np.nan
+            found[s.name][row] = s.sign(campaign.direction)[row] * at[s.reads] if at is not None else np.nan
     if missing and not any(np.isfinite(column).any() for column in found.values()):
         raise DataError(f"{campaign.name}: the rig has no steady state at any of the points. Give milder ones.")
     return replace(campaign, values={**campaign.values, **found})

@@ -8,18 +8,24 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ....model.errors import SolveError
 from ....scenarios.measured.table import Campaign
-from ..infer.found import Found
-from ..infer.weigh import Options
+from ..infer.evidence import split_error
+from ..infer.fit import Fit, Vector
+from ..infer.found import Extra, Found
+from ..infer.problem import Aside, Problem
+from ..infer.terms import remainders, spreads
+from ..infer.weigh import Options, Weighing
 from ..model.observe import Observed
 from . import channels
+from .decide import temper
 from .estimate import loose_variance
 from .findings import Gain
-from .foresee import Foreseen, foresee
 
 #: Draws of the bootstrap.
 DRAWS = 2000
@@ -33,6 +39,8 @@ FOLDS = 3
 LEAST = 6
 #: Weights of the ridge that are tried, as shares of the number of readings.
 RIDGES = np.geomspace(1e-4, 1.0, 9)
+#: Probability from which a hypothesis counts in what is foreseen.
+COUNTS = 0.003
 
 
 def measure_gains(found: Found, asked: Options, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
@@ -45,7 +53,7 @@ def measure_gains(found: Found, asked: Options, progress: Callable[[float], None
     """
     problem, options = found.problem, Options(seed=asked.seed, most=asked.most, critical=found.critical)
     plans = schemes(problem.data.campaign)
-    total, done, told = sum(len(folds) for folds in plans.values()), 0, []
+    total, done, told = sum(len(folds) for folds in plans.values()), 0, list[Gain]()
     for scheme, folds in plans.items():
         errors = []
         for rows in folds:
@@ -54,10 +62,8 @@ def measure_gains(found: Found, asked: Options, progress: Callable[[float], None
                 errors.append(foresee(found, held, options))
             done += 1
             progress(done / total)
-        if errors:
-            told += [
-                g for i in range(len(problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, asked.seed))
-            ]
+        sensors = range(len(problem.data.read) if errors else 0)
+        told += filter(None, (_gain(found, scheme, folds, errors, i, asked.seed) for i in sensors))
     oil = [s.name for s in problem.data.read if s.kind == "oil_temp"]
     return sorted(told, key=lambda g: g.channel not in oil)
 
@@ -68,42 +74,98 @@ def _gain(
     """One sensor's errors over all folds of a scheme."""
     o = found.problem.data
     held = np.concatenate([e.held for e in errors])
-    sides = ("before", "after", "leading")
-    errors_by = {side: np.concatenate([getattr(e, side) for e in errors], axis=1) for side in sides}
+    errors_by = {side: np.concatenate([e.by[side] for e in errors], axis=1) for side in errors[0].by}
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
     entries = np.setdiff1d(np.flatnonzero(o.kind == sensor), found.problem.entries_aside)
-    rivals, s = {}, o.read[sensor]
-    rows = o.row[entries]
+    rivals, s, rows = {}, o.read[sensor], o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
         known = [e for e in left if e is not None]
         if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
             rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
-    both = {
-        side: Gain.Both.model_validate(
-            {key: channels.difference(s, rms(line[mine])) for key, line in zip(("without", "with"), lines, strict=True)}
-        )
-        for side, lines in errors_by.items()
-    }
+    told = {side: [channels.difference(s, rms(line[mine])) for line in lines] for side, lines in errors_by.items()}
+    both: dict[str, Any] = {side: dict(zip(("without", "with"), values, strict=True)) for side, values in told.items()}
     return Gain(
         scheme=scheme,
         channel=s.name,
         unit=channels.unit_of_difference(s),
         n=int(mine.sum()),
-        rmse_before=both["before"].without,
-        rmse_after=both["after"].without,
-        before=both["before"],
-        after=both["after"],
-        leading=both["leading"],
+        rmse_before=told["before"][0],
+        rmse_after=told["after"][0],
+        **both,
         ratio_ci90=_bootstrap(errors_by["before"][0, mine], errors_by["after"][0, mine], test, seed),
         noise_floor=channels.difference(s, noise_floor(found, sensor)),
         rivals=rivals,
         chosen=dict(Counter(c for e in errors for c in e.causes).most_common()),
         folds=len(folds),
     )
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """Errors of what is foreseen (2, k): by what lasts, and by what passes with a test or mounting, too.
+
+    Args:
+        held: entries that are left out (k,)
+        by: errors "before", as calibrated without a cause, "after", all hypotheses averaged, and by the "leading" one
+        causes: of that one
+    """
+
+    held: np.ndarray
+    by: Mapping[str, np.ndarray]
+    causes: tuple[str, ...]
+
+
+def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
+    """Everything anew without some readings, and how far it is off there.
+
+    Args:
+        whole: the search of all data; its problem, forms and gross readings are used
+        held: entries of readings that are left out (k,)
+        options: with the prior odds of all data
+
+    Raises:
+        SolveError: the model cannot be run without a cause
+    """
+    problem = whole.problem
+    kept = np.setdiff1d(np.arange(problem.m), held)
+    found = temper(Weighing(problem.only(kept), whole.formulas, options).glance())
+    aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
+    left = _Left(problem.without(aside), found, held)
+    leader, weights = found.hypotheses[0], np.where(found.probabilities > COUNTS, found.probabilities, 0.0)
+    counted = [(h, w) for h, w in zip(found.hypotheses, weights, strict=True) if w or h is leader]  # the leader first
+    errors = np.array([left.by(h.fit, h.extras) for h, _ in counted])
+    after = np.average(errors, axis=0, weights=[w for _, w in counted])
+    return Foreseen(held, {"before": left.by(found.null, ()), "after": after, "leading": errors[0]}, leader.causes)
+
+
+class _Left:
+    """What fits without some entries leave of them.
+
+    Args:
+        problem: with these entries
+        found: the search without them
+        held: their numbers (k,)
+    """
+
+    def __init__(self, problem: Problem, found: Found, held: np.ndarray) -> None:
+        self.problem, self.held = problem, held
+        self.kept = np.setdiff1d(np.arange(problem.m), [*held, *problem.entries_aside])
+        scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
+        spread, look = [f for f in found.formulas if f in scattering], problem.look(found.null.look.z)
+        self.terms = {t.label: t for t in (*spreads(problem, look, spread, found.prior), *remainders(problem))}
+
+    def by(self, fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
+        """By what lasts, and by what passes with a test or mounting, too (2, k)."""
+        own = [Extra(self.terms[e.of.label], e.size) for e in extras if e.of.label in self.terms]
+        look = self.problem.look(fit.look.z, fit.look.acting)
+        noise = self.problem.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
+        S = noise.covariance + look.jacobian / Vector(self.problem, look.acting).precision @ look.jacobian.T
+        r = self.problem.measured - look.shown + look.jacobian @ look.x
+        return split_error(S, noise.passing, r, self.kept, self.held)
 
 
 def noise_floor(found: Found, sensor: int) -> float:

@@ -32,9 +32,8 @@ def rows(found: Found, h: Hypothesis) -> Rows:
         mine = o.kind == i
         if not mine.any():
             continue
-        table = np.full((3, c.n), np.nan)
-        table[:, o.row[mine]] = o.measured[mine], null[mine], leader[mine]
-        measured, nominal, extended = (array(channels.in_unit(s, line)) for line in table)
+        lines = o.over_rows(i, o.measured, null, leader)
+        measured, nominal, extended = (array(channels.in_unit(s, line)) for line in lines)
         sd = channels.difference(s, float(np.median(spread[mine])))
         told[s.name] = Rows.Values(
             measured=measured, nominal=nominal, extended=extended if h.fit.look.acting else (), sd=sd
@@ -67,12 +66,7 @@ def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[st
 def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[Picture, ...]:
     """For each cause of a hypothesis what is left without and with it, in the channel that shows it best.
 
-    It is drawn against what the cause acts on; against the running order where that is not measured.
-
-    Args:
-        found: the search
-        h: the hypothesis
-        quantities: what readings can be drawn against
+    It is drawn against what the cause acts on; against the running order where this is none of the quantities.
     """
     problem, fit, o = found.problem, h.fit, found.problem.data
     sd = np.sqrt(np.diag(fit.noise.covariance))[problem.own]
@@ -83,10 +77,8 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
         effect = (fit.look.shown - problem.shown(fit.look.z, others))[problem.own]
         ends = np.unique(o.kind[o.kind < len(o.read)])
         best = max((int(i) for i in ends), key=lambda i: float(np.mean((effect / sd)[o.kind == i] ** 2)))
-        mine, sensor = o.kind == best, o.read[best]
-        table = np.full((2, o.campaign.n), np.nan)
-        table[:, o.row[mine]] = left[mine] + effect[mine], left[mine]
-        before, after = (array(channels.difference(sensor, 1.0) * line) for line in table)
+        sensor, lines = o.read[best], o.over_rows(best, left + effect, left)
+        before, after = (array(channels.difference(sensor, 1.0) * line) for line in lines)
         acts_on = acting.formula.cause.acts_on
         against = acts_on if acts_on in quantities else "order"
         made.append(Picture(cause=acting.id, channel=sensor.name, quantity=against, before=before, after=after))

@@ -23,9 +23,7 @@ COUNTS = 0.03
 def predict(found: Found, points: Campaign) -> tuple[Prediction, ...]:
     """What the instruments will show at points, where the machine can be run."""
     read, told = found.problem.data.read, []
-    tables = [
-        [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)] for table in simulate(found, points)
-    ]
+    tables = [list(map(channels.in_unit, read, table)) for table in simulate(found, points)]
     for row in range(points.n):
         both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
         stated = points.points[row] > 0  # else a row that a test lacks
@@ -56,10 +54,8 @@ def _observed(found: Found, points: Campaign) -> Observed:
     for _ in range(2):
         o = data.another(filled)
         o.features[0] = np.clip((points.order - order.min()) / max(np.ptp(order), 1.0), 0.0, 1.0)[points.test]
-        table = _predicted(found.problem, found.null, o)
-        known = {
-            s.name: np.where(np.isfinite(row), row, guess[s.name]) for s, row in zip(data.read, table, strict=True)
-        }
+        rows = zip(data.read, _predicted(found.problem, found.null, o), strict=True)
+        known = {s.name: np.where(np.isfinite(row), row, guess[s.name]) for s, row in rows}
         filled = replace(filled, values={**filled.values, **known})
     return o
 

@@ -17,14 +17,17 @@ from ....scenarios.measured import repeats
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
-from ..infer.problem import Aside, Problem
+from ..infer.problem import SET_ASIDE, Aside, Problem
 from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
 from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, ResidualMean, VarianceComponent
+from .numbers import array
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.0
+#: Chi-square by which a given reading may explain less than another one of its row.
+AS_WELL = 4.0
 #: Mean deviation from the rig as filed that is told: this [K], and so many tolerances of the instruments.
 FELT = 1.0
 TOLERANCES = 3.0
@@ -44,7 +47,7 @@ def check_data(found: Found, h: Hypothesis) -> DataQuality:
         gross=gross_readings(found, h),
         nuisances=values_off(found, h),
         variance=scatters(found, h),
-        repeated=list_repeats(found.problem.data.campaign),
+        repeated=list_repeats(found),
         adequacy=adequacy(found, h),
         as_filed=errors_as_filed(found.problem),
     )
@@ -69,9 +72,24 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
                 shown=float(channels.in_unit(s, campaign.values[name][row])),
                 expected=expected,
                 unit=channels.unit(s),
+                instead=explain_as_well(problem, h.fit, aside),
             )
         )
     return tuple(told)
+
+
+def explain_as_well(problem: Problem, fit: Fit, aside: Aside) -> tuple[str, ...]:
+    """Other given sensors of a row that explain as well what a given one does that is set aside there."""
+    given = [s.name for s in problem.source(aside)[0].given if aside.sensor]
+    far = [k for k, t in enumerate(fit.noise.terms) if t.name == SET_ASIDE]
+    if not given or len(far) != len(problem.aside):
+        return ()
+    left, terms, place = {}, list(fit.noise.terms), far[sorted(problem.aside).index(aside)]
+    for name in given:
+        terms[place] = problem.far(Aside(aside.number, name), fit.look)
+        e = replace(fit, noise=replace(fit.noise, terms=tuple(terms))).linear(problem)[1]
+        left[name] = float(e @ e)
+    return tuple(name for name in given if name != aside.sensor and left[name] < left[aside.sensor] + AS_WELL)
 
 
 def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
@@ -169,38 +187,34 @@ def is_apart(mean: float, sd: float | np.floating) -> bool:
     return bool(abs(mean) > max(FELT, TOLERANCES * sd))
 
 
-def list_repeats(campaign: Campaign) -> tuple[RepeatedPoint, ...]:
-    """Points that were measured in several tests, each sensor in running order, as deviations from the point's mean."""
-    groups = repeats.repeats(campaign)
-    stated = {s.sensor: s.stated for s in repeats.scatters(campaign, groups)}
-    both = bool((campaign.direction < 0).any())
-    told = []
-    for group in groups:
-        tests = [int(np.flatnonzero(campaign.order == order)[0]) for order in group.order]
+def list_repeats(found: Found) -> tuple[RepeatedPoint, ...]:
+    """What the calibrated rig leaves at points that were measured in several tests, less its mean, in running order."""
+    problem, o, told = found.problem, found.problem.data, []
+    left = problem.measured - found.null.look.shown
+    left[problem.entries_aside] = np.nan
+    rows = {s.name: o.over_rows(i, left[problem.own])[0] for i, s in enumerate(o.read)}
+    campaign, both = o.campaign, bool((o.campaign.direction < 0).any())
+    for group in repeats.repeats(campaign, rows):
         for sensor in campaign.read:
-            unit, values = channels.difference(sensor, 1.0), (group.total[sensor.name], group.difference[sensor.name])
-            if np.isfinite(values[0]).sum() < 2:  # cells of this sensor are empty
+            unit, name = channels.difference(sensor, 1.0), sensor.name
+            sums, apart = unit * group.total[name], unit * group.difference[name] * (1.0 if both else np.nan)
+            if np.isfinite(sums).sum() < 2:  # cells of this sensor are empty
                 continue
-            sums, apart = (unit * (v - np.nanmean(v)) for v in values)
+            each = zip(group.tests, array(sums), array(apart), strict=True)
             told.append(
                 RepeatedPoint(
                     condition=condition(campaign, group),
-                    channel=sensor.name,
+                    channel=name,
                     unit=channels.unit_of_difference(sensor),
                     repeats=tuple(
-                        Repeat(test=k + 1, order=order, date=campaign.date[k], sum=a, difference=b)
-                        for k, order, a, b in zip(tests, group.order, _known(sums), _known(apart, both), strict=True)
+                        Repeat(test=k + 1, order=campaign.order[k], date=campaign.date[k], sum=a, difference=b)
+                        for k, a, b in each
                     ),
                     sd=float(np.nanstd(sums, ddof=1)),
-                    card=unit * stated[sensor.name] / (2**0.5 if both else 1.0),
+                    card=unit * repeats.stated(campaign, sensor) / (2**0.5 if both else 1.0),
                 )
             )
     return tuple(told)
-
-
-def _known(values: np.ndarray, at_all: bool = True) -> list[float | None]:
-    """Numbers, None for those that there are not."""
-    return [float(v) if at_all and np.isfinite(v) else None for v in values]
 
 
 def condition(campaign: Campaign, point: repeats.Repeat) -> str:

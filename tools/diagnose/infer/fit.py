@@ -47,20 +47,17 @@ class Fit:
     Args:
         look: readings and Jacobian at the most likely point
         noise: scatter with its most likely scales
-        cost: half the squared misfit, priors included
-        evidence: log of the marginal likelihood, without the prior of the hypothesis
+        evidence: log of the marginal likelihood, without the prior of the hypothesis and what slopes promise where the
+            fit has stalled
         form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
         effects: of its causes on the data (m, k)
-        short: log likelihood that the slopes promise beyond the point, where the fit has stalled; the evidence lacks it
     """
 
     look: Look
     noise: Noise
-    cost: float
     evidence: float
     form: float
     effects: np.ndarray
-    short: float = 0.0
 
     @property
     def causes(self) -> tuple[str, ...]:
@@ -151,9 +148,7 @@ def fitted(
     """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 
     Args:
-        problem: data and model
-        acting: causes where the fit begins
-        z: nuisances where it begins
+        acting, z: causes and nuisances where the fit begins
         scales: logarithms of the scales of its loose terms where it begins
         steps: at most
 
@@ -163,16 +158,16 @@ def fitted(
     look = _begun(problem, acting, z)
     noise = _Line(problem, look).scattered(problem.noise(look, scales))
     for _ in range(ROUNDS):
-        look, cost = _settled(problem, look, noise, steps)
+        look = _settled(problem, look, noise, steps)
         before, line = noise, _Line(problem, look)
         noise = line.scattered(before)
         if np.abs(noise.scales - before.scales).max(initial=0.0) < SETTLED:
             break
-    return line.weighed(noise, cost)
+    return line.weighed(noise)
 
 
-def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
-    """Damped Gauss-Newton to convergence at a given scatter: the look there, and half the squared misfit."""
+def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> Look:
+    """The look where damped Gauss-Newton converges at a given scatter."""
     vector, white = Vector(problem, look.acting), White.of(noise.covariance)
     cost, damping = _cost(problem, vector, white, look), 0.0
     for _ in range(steps):
@@ -198,7 +193,7 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
             break
         if gain > TRUSTED * _promised(change, gradient, H):
             damping /= 5
-    return look, cost
+    return look
 
 
 def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
@@ -243,13 +238,13 @@ class _Line:
         wide = self.known + columns @ columns.T
         return self.problem.noise(self.look, noise.scales).fitted(self.residual, wide)
 
-    def weighed(self, noise: Noise, cost: float) -> Fit:
+    def weighed(self, noise: Noise) -> Fit:
         """The fit with a scatter, and its evidence."""
         V, look, residual = noise.covariance + self.known, self.look, self.residual
         if not look.acting:
             white = White.of(V)
             evidence = white.log_density(white(residual)) + noise.log_prior
-            return Fit(look, noise, cost, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
+            return Fit(look, noise, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
         effects = self._effects()
         rough = _rough(self.problem, effects)
         logs = []
@@ -257,9 +252,8 @@ class _Line:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, *self.prior) + np.log(weight))
-        form, short = FORM[int(np.argmax(logs))][0], self._short(noise)
-        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - short
-        return Fit(look, noise, cost, evidence, form, effects, short)
+        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - self._short(noise)
+        return Fit(look, noise, evidence, FORM[int(np.argmax(logs))][0], effects)
 
     def _effects(self) -> np.ndarray:
         """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""

@@ -124,11 +124,7 @@ class Found:
     prior: Prior
 
     def beside(self, log_bayes_factor: Callable[[Iterable[str]], float]) -> Found:
-        """The search with what other data say of its causes, where the two share nothing else that is uncertain.
-
-        Args:
-            log_bayes_factor: of some causes against none
-        """
+        """The search with what other data say of its causes, where the two share nothing else that is uncertain."""
         by = np.array([log_bayes_factor(h.causes) for h in self.hypotheses])
         hypotheses = tuple(replace(h, log_joint=h.log_joint + b) for h, b in zip(self.hypotheses, by, strict=True))
         with np.errstate(divide="ignore"):

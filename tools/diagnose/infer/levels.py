@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..model.logs import Quadratics
+
 #: Standard deviations of seasons and windows that are expected before any data.
 SEASON = 0.25
 #: As shares of that of machines.
@@ -21,32 +23,6 @@ COUNTS = 2.0
 SAME = 1e-6
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
-
-
-@dataclass(frozen=True, eq=False)
-class Quadratics:
-    """What n groups say of k knobs: eta (n, k), H (n, k, k)."""
-
-    eta: np.ndarray
-    H: np.ndarray
-
-    def spread(self, covariance: np.ndarray) -> Quadratics:
-        """The same of what the groups scatter about, with a covariance (k, k)."""
-        A = np.eye(self.H.shape[1]) + self.H @ covariance
-        both = np.linalg.solve(A, np.concatenate([self.H, self.eta[:, :, None]], axis=2))
-        H = both[:, :, :-1]
-        return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
-
-    def times(self, share: float) -> Quadratics:
-        """The same from a share of the samples."""
-        return Quadratics(share * self.eta, share * self.H)
-
-    def summed(self, group: np.ndarray, n: int) -> Quadratics:
-        """Summed over the members of each of n groups."""
-        eta, H = np.zeros((n, self.eta.shape[1])), np.zeros((n, *self.H.shape[1:]))
-        np.add.at(eta, group, self.eta)
-        np.add.at(H, group, self.H)
-        return Quadratics(eta, H)
 
 
 @dataclass(frozen=True, eq=False)

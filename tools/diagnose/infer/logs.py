@@ -5,38 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import partial
 
 import numpy as np
 
 from ....model.machines.roles import Roles
 from ....scenarios.measured.logs import Log
-from ....scenarios.measured.nominal import drive_by
+from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
+from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
-from ..model.logs import Filter, Passed, log_likelihood
+from ..model.logs import Filter, Quadratics, log_likelihood
 from ..model.plant import Plant
 from ..model.windows import WINDOW, Windows, windows
-from .levels import Levels, Quadratics, estimate, first_levels
+from .levels import Levels, estimate, first_levels
 from .problem import Look, Problem
+from .walk import PASSES, curves, independent, suit, walk
 
-#: Passes over logs at most.
-PASSES = 30
-#: Windows by which the likeliest knobs are sought, at most.
-SOUGHT = 96
-#: Knobs move by so many standard deviations between machines at most,
-FAR = 2.0
-#: and stay where a move makes the logs likelier by less than so much.
-LITTLE = 1.0
-#: They stay the nearer the less likely the logs become: weights of that, in inverse variances between machines.
-DAMPINGS = (0.0, 1.0, 10.0, 100.0, 1000.0)
-#: Passes at first that take every move: what switches makes logs less likely before it makes them likelier.
-FREE = 4
-#: Scatter of readings at least, as a share of what the card says.
-LEAST = 0.3
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05
 #: Of states that are no body's.
@@ -50,19 +37,8 @@ SHORTEST = 40
 FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
-#: Steps of a sample at most.
-PARTS = 8
-#: Twice as many change what is foreseen by so little of its errors.
-NEAR = 0.1
-#: Windows by which it is told whether logs hold means.
-TIMED = 24
-#: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
-STILL = 0.03
-STEPPING = 0.5
-#: Correlations of errors are summed over so many samples at most, and down to so much.
-MEMORY = 36
-#: What lasts longer is a matter of windows and years.
-CORRELATED = 0.05
+#: Time from the last healthy logs to those in question, where it is no calendar's [s].
+LATER = 14 * 86400.0
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -81,7 +57,8 @@ class Fleet:
         share: of their samples that counts, 0 without any
         length: samples of a window that count
         at: knobs of the machines at which they say it (machines, k)
-        seasons: machine and number of a season by the calendar -> number of that one in the levels, its middle time [s]
+        curves: of its knobs
+        seasons: machine and number of a season -> number of that one in the levels, its middle time [s]
     """
 
     filter: Filter
@@ -91,6 +68,7 @@ class Fleet:
     share: float
     length: int
     at: np.ndarray
+    curves: Curves
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
@@ -102,24 +80,31 @@ class Fleet:
         return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons)
 
     def going_on(self, logs: Sequence[Log]) -> Fleet:
-        """The same for logs in question in one season of the machine's healthy ones, the nearer the more so."""
+        """The same for logs in question in one season of the machine's healthy ones, the nearer the more so.
+
+        Logs without dates count as some weeks after the last of the healthy ones.
+        """
         ends = np.array([log.time[k] for log in logs for k in (0, -1)])
-        there = set(season_of(ends, True).tolist()) if all(log.dated for log in logs) else set[int]()
-        known = self.seasons.get((0, min(there))) if len(there) == 1 else None
-        if known is None:
+        own, dated = [season for machine, season in self.seasons if not machine], all(log.dated for log in logs)
+        there = set(season_of(ends, True).tolist()) if dated else set(own[-1:])
+        if len(there) != 1 or not there <= set(own):
             return self
-        number, time = known
-        return replace(self, levels=self.levels.within(number, abs(float(ends.mean()) - time) / (YEAR / 4)))
+        number, time = self.seasons[0, there.pop()]
+        away = abs(float(ends.mean()) - time) if dated else LATER
+        return replace(self, levels=self.levels.within(number, away / (YEAR / 4)))
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     """A rig, driven by what logs give, and its knobs, compiled for logs with the sensors of one."""
-    driven = drive_by(scenario, log.sensors).spec
-    roles = Roles.of(driven)
+    driven = drive_by(scenario, log.sensors)
+    roles = Roles.of(driven.spec)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
-    flat = driven.with_values(relays).flat()
-    found = tuple(k for k in knobs(roles, log.sensors) if flat.index.keys() >= set(k.paths))
+    flat, nominal = driven.spec.with_values(relays).flat(), Nominal(driven)
+    loss = abs(sum(nominal.value(f"{end}.w") * nominal.value(f"{end}.tau") for end in roles.ends))
+    given = {s.reads for s in log.sensors}
+    found = tuple(k for k in knobs(roles, log.sensors, loss) if flat.index.keys() - given >= set(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
+    flat = flat.holding(paths)
     plant = Plant(flat, paths, [s.reads for s in log.given], [s.reads for s in log.read])
     bodies, states = plant.flat.bodies, plant.flat.states
     noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
@@ -170,130 +155,21 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0, length, begun.mean)
+        return Fleet(own, found, empty, begun, 0.0, length, begun.mean, Curves({}, 0 * sd))
     past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
-    _suit(own, past, np.zeros((len(machine), len(sd))))
+    suit(own, past, np.zeros((len(machine), len(sd))))
     own.learns = True
-    at, passed, said = _walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
+    at, passed = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
-    levels = estimate(said.times(share), season, machine_of, begun)
-    dated = all(log.dated for log in logs)
+    bent = curves(own, past)
+    levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
-    seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys) if dated}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, seasons)
-
-
-def _walk(
-    own: Filter,
-    data: Windows,
-    group: np.ndarray,
-    expected: tuple[np.ndarray, np.ndarray],
-    progress: Callable[[int, float], None],
-    share: float = 0.0,
-) -> tuple[np.ndarray, Passed, Quadratics]:
-    """The likeliest knobs of groups of windows: passes, each where the one before points to, until they stay there.
-
-    Args:
-        own: the filter; its scatter is fitted where it learns
-        data: the windows
-        group: number of the group of each
-        expected: where all groups begin and are expected (k,), and their covariance about it (k, k)
-        progress: told of the number of a pass and the share of it that is done
-        share: of the samples that counts; 0 for what each pass shows
-
-    Returns:
-        knobs (groups, k), the pass there, and what the windows say there
-    """
-    begun, known, sd = expected[0], np.linalg.inv(expected[1]), np.array([k.sd for k in own.knobs])
-    z, places = np.tile(begun, (int(group.max()) + 1, 1)), np.linspace(0, len(group) - 1, min(len(group), SOUGHT))
-    some = places.astype(int)
-    few, of, whole = data.some(some), group[some], len(group) / len(some)
-
-    def value(passed: Passed, z: np.ndarray) -> float:
-        return counted * log_likelihood(passed) - float(np.einsum("ni,ij,nj", z - begun, known, z - begun)) / 2
-
-    best = -np.inf, z
-    for n in range(PASSES):
-        passed = own.run(few, z[of], progress=partial(progress, n))
-        said, scatter, counted = (
-            _quadratics(passed, z[of]),
-            own.scatter,
-            whole * (share or min(independent(passed), 1.0)),
-        )
-        if own.learns:
-            own.scatter = _scatter(own, passed)
-            passed = own.run(few, z[of], slopes=False)
-        told, least = said.times(counted).summed(of, len(z)), value(passed, z)
-        H = told.H + known
-        uphill, gained = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None], 0.0
-        best = max(best, (least, z), key=lambda tried: tried[0])
-        free = not own.learns and n < FREE
-        if not own.learns and n == FREE and least < best[0]:
-            z = best[1]
-            continue
-        for damping in DAMPINGS:
-            step = np.linalg.solve(H + damping * np.diag(sd**-2), uphill)[:, :, 0].clip(-FAR * sd, FAR * sd)
-            gained = value(own.run(few, (z + step)[of], slopes=False), z + step) - least
-            if free or gained >= 0:
-                break
-        if n + 1 == PASSES or (not free and gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
-            break
-        z = z + step if free or gained > 0 else z
-    passed = own.run(data, z[group])
-    return z, passed, _quadratics(passed, z[group])
-
-
-def _suit(own: Filter, data: Windows, z: np.ndarray) -> None:
-    """Fit the filter to windows: the steps of a sample, and whether they hold what was read at moments."""
-    some = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int)
-
-    def passed(moments: bool, parts: int) -> Passed:
-        own.moments, own.parts = moments, parts
-        return own.run(data.some(some), z[some], slopes=False)
-
-    found = passed(False, 1)
-    while own.parts < PARTS:
-        finer = passed(False, 2 * own.parts)
-        scale = np.nanmedian(np.abs(finer.error), axis=(0, 1))
-        if (np.sqrt(np.nanmean((finer.shown - found.shown) ** 2, axis=(0, 1))) <= NEAR * scale).all():
-            own.parts //= 2
-            break
-        found = finer
-    changes, whole = np.abs(np.diff(data.given, axis=1)), np.ptp(data.given[data.there], axis=0)
-    if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() >= STEPPING:
-        # where inputs change all the time a wider error of each would only hide what else is wrong
-        logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
-        own.moments = logs[1] > logs[0]
-
-
-def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
-    """Log likelihoods about zero from slopes and curvatures at z (n, k)."""
-    return Quadratics(passed.slope + (passed.curvature @ at[:, :, None])[:, :, 0], passed.curvature)
-
-
-def _scatter(own: Filter, passed: Passed) -> np.ndarray:
-    """Scatter of the readings that makes the prediction errors as large as they are."""
-    usual = np.nanmedian(passed.error**2 / passed.variance, axis=(0, 1)) / 0.455
-    found = own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5
-    return np.maximum(found, LEAST * own.read_sd)
-
-
-def independent(passed: Passed) -> float:
-    """Share of the samples that count as independent: one over the sum of the errors' correlations in time."""
-    e = np.clip(passed.error / np.sqrt(passed.variance), -3.0, 3.0)
-    e = e - np.nanmean(e, axis=(0, 1))
-    own = np.nanmean(e**2, axis=(0, 1)) + 1e-12
-    most = int(np.isfinite(e).any(axis=2).sum(axis=1).max())  # samples that count in the longest window
-    shares = []
-    for j in range(e.shape[2]):
-        lags = [float(np.nanmean(e[:, k:, j] * e[:, :-k, j]) / own[j]) for k in range(1, min(MEMORY, most - 1))]
-        first = next((k for k, rho in enumerate(lags) if rho < CORRELATED), len(lags))
-        shares.append(1 / (1 + 2 * sum(lags[:first])))
-    return float(np.mean(shares))
+    seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,13 +180,15 @@ class Question:
         windows: of them
         season: number of the season of each window
         span: number of the span of time of each window, those of a season one after the other
-        told: what each window says of moves of the knobs from the machine's values
+        told: what each window says of moves of the knobs from the machine's values, in proportion to effects
+        curves: of moves from the machine's values
     """
 
     windows: Windows
     season: np.ndarray
     span: np.ndarray
     told: Quadratics
+    curves: Curves
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
@@ -326,16 +204,19 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
-        _suit(own, data, np.tile(levels.mean[0], (len(season), 1)))
+        suit(own, data, np.zeros((len(season), len(own.knobs))))
     span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
-    passed, said = _walk(own, data, season, (found.at[0], wide), step)[1:]
-    nearer = _walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)[1:]
-    if log_likelihood(nearer[0]) - log_likelihood(passed) > data.counts.sum():
-        passed, said = nearer  # a change is so large that it matters where the filter is
-    moves = Quadratics(said.eta - said.H @ levels.mean[0], said.H).times(found.share or independent(passed))
-    return Question(data, season, span, moves)
+    z, passed = walk(own, data, season, (found.at[0], wide), step)
+    nearer = walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)
+    at = z[season]
+    if log_likelihood(nearer[1]) - log_likelihood(passed) > data.counts.sum():
+        at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
+    bent = found.curves if found.share else curves(own, data)
+    told = passed.told(*bent.at(at)).times(found.share or independent(passed))
+    moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
+    return Question(data, season, span, moves, bent.about(levels.mean[0]))
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
@@ -392,4 +273,4 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     root = np.linalg.cholesky(found.levels.covariance[0])
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    return LogProblem(Logged(own.plant, campaign, found.knobs, told.eta, told.H, root), season, found.levels)
+    return LogProblem(Logged(own.plant, campaign, found.knobs, told, root, asked.curves), season, found.levels)

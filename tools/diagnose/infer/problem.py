@@ -19,6 +19,8 @@ from ..model.observe import Observed
 from .evidence import INSTRUMENT, WIDTHS
 from .scales import most_likely
 
+#: Name of what makes a reading count for nothing.
+SET_ASIDE = "set aside"
 #: Shapes stay inside so many deviations.
 FAR = 2.4
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
@@ -254,9 +256,9 @@ class Problem:
         if not aside.sensor:
             variance = np.zeros(self.m)
             variance[aside.number] = (self.FAR * self.repeat[aside.number]) ** 2
-            return Term("set aside", variance=variance)
+            return Term(SET_ASIDE, variance=variance)
         columns = dict(self.inputs(look))[aside.sensor]
-        return Term("set aside", self.FAR * columns[:, [aside.number]])
+        return Term(SET_ASIDE, self.FAR * columns[:, [aside.number]])
 
     def inputs(self, look: Look) -> list[tuple[str, np.ndarray]]:
         """Given sensor -> effects (M, rows of all campaigns) of one standard deviation of each of its readings."""

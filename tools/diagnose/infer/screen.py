@@ -104,7 +104,6 @@ def samples(formulas: tuple[Formula, ...], orders: tuple[float, ...]) -> tuple[t
     """Candidates spread over the prior of each formula's shapes, the middle first, and their owners.
 
     Args:
-        formulas: forms
         orders: places in the running order between two tests, each of which a change may have
     """
     found, owner = [], []
@@ -149,14 +148,7 @@ def spread(n: int, d: int) -> np.ndarray:
 
 
 def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
-    """What every form would explain beside a fitted hypothesis.
-
-    Args:
-        problem: data and model
-        near: where it was fitted
-        linear: whitening by all that is uncertain there, and the residual in it
-        forms: of causes
-    """
+    """What every form would explain near a fitted hypothesis: in a whitening by all that is uncertain there."""
     candidates, owner = samples(tuple(forms), changes(problem))
     effects = problem.tangents(near.z, near.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
@@ -164,13 +156,7 @@ def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], for
 
 
 def null_draws(found: Screen, weights: np.ndarray, seed: int) -> np.ndarray:
-    """Log Bayes factors of any cause against none on data of the null (draws,).
-
-    Args:
-        found: all causes beside none
-        weights: log prior weight of each candidate, all together 1
-        seed: of the draws
-    """
+    """Log Bayes factors of any cause against none on data of the null (draws,), by log prior weights of candidates."""
     e = np.random.default_rng(seed).standard_normal((len(found.white), DRAWS))
     logs = log_bayes_factors((found.white.T @ e).T, (found.white**2).sum(axis=0), *priors(found.candidates))
     return np.asarray(np.logaddexp.reduce(logs + weights, axis=1))

@@ -282,11 +282,9 @@ class Whitened:
 def search(
     linear: Linear, begun: Sequence[Scatter], progress: Callable[[float], None], scatters: int = SCATTERS
 ) -> list[TermSet]:
-    """The likeliest sets of terms in all scatters looked at, best first; one of each set of terms.
+    """The likeliest sets of terms in all scatters looked at, from some on, best first; one of each set of terms.
 
     Args:
-        linear: the problem
-        begun: scatters to begin with
         progress: told the share done
         scatters: looked at after the one with the likeliest set
     """

@@ -79,24 +79,14 @@ class Options:
     critical: float | None = None
 
 
-USUAL = Options()
-
-
 def _silent(stage: str, share: float) -> None:
     """No progress."""
 
 
 def weigh(
-    problem: Problem, formulas: Sequence[Formula], options: Options = USUAL, progress: Progress = _silent
+    problem: Problem, formulas: Sequence[Formula], options: Options = Options(), progress: Progress = _silent
 ) -> Found:
-    """All hypotheses that count, weighed.
-
-    Args:
-        problem: data and model
-        formulas: all forms of all causes
-        options: how
-        progress: told of each stage and the share done
-    """
+    """All hypotheses that count, weighed; progress is told of each stage and the share done."""
     return Weighing(problem, formulas, options, progress).run()
 
 

@@ -91,7 +91,6 @@ class Row:
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
         dwell: time the row was held as stated [s]
-        rates: sensor -> how fast what it reads changes [1/s], in logs
     """
 
     base: Values
@@ -102,7 +101,6 @@ class Row:
     humidity: Num = 0.5
     second: Num = 0.0
     dwell: Num = 3600.0
-    rates: Values = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -122,6 +120,7 @@ class Form:
             sizes of every test, of every mounting, or of the steps from each test to the next
         regime: quantity and side it is limited to ("speed above"), with the shape that holds the threshold; for words
         low: its size cannot be below this, whatever the cause's can
+        scale: what is told of the cause's size: of an instrument its own error
     """
 
     name: str = ""
@@ -136,6 +135,7 @@ class Form:
     spread: str = ""
     regime: Mapping[str, str] = field(default_factory=dict)
     low: float = -np.inf
+    scale: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class Ranges:
             "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
-        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs", and
+        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", and
             "still: NAME" of sensors that may hang
         powers: part -> typical loss, or heat flow rate, of the nominal [W]
     """

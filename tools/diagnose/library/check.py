@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from ....model.errors import suggestion
 from ....model.machines.spec import Spec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Values, as_array
+from .cause import Cause, Form, Ranges, Row, as_array
 
 #: Accuracy to which a form has to leave things as they are at size zero, relative.
 NEUTRAL = 1e-6
@@ -76,25 +78,24 @@ def _of_form(
     theta = {cause.size.name: 0.0} | {shape.name: float(shape.at(0.0)) for shape in form.shapes}
     row = Row(base=base, sensors=shown, order=0.5, direction=1.0, rise=ranges.rise, dwell=7200.0)
     own = {part.name for part in form.parts}
-    said: list[tuple[Callable[[], Values], Mapping[str, float]]] = []
-    if (values := form.values) is not None:
-        said.append((lambda: values(theta, row), base))
-    if (truth := form.truth) is not None:
-        said.append((lambda: truth(theta, row), shown))
-    if (shows := form.shown) is not None:
-        said.append((lambda: shows(theta, row, read), read))
-    if (pace := form.pace) is not None:
-        said.append((lambda: {"pace": pace(theta, row)}, {"pace": 1.0}))
-    if not said:
+    laws: list[tuple[Callable[..., Any] | None, tuple[Any, ...], Mapping[str, float]]] = [
+        (form.values, (theta, row), base),
+        (form.truth, (theta, row), shown),
+        (form.shown, (theta, row, read), read),
+        (form.pace, (theta, row), {"pace": 1.0}),
+    ]
+    if all(law is None for law, _, _ in laws):
         yield "it says nothing. Give it values, truth, shown or pace."
-    for formula, before in said:
-        yield from _neutral(formula, before, own)
+    for law, given, before in laws:
+        if law is not None:
+            yield from _neutral(partial(law, *given), before, own)
 
 
-def _neutral(formula: Callable[[], Values], before: Mapping[str, float], own: set[str]) -> Iterator[str]:
+def _neutral(formula: Callable[[], Any], before: Mapping[str, float], own: set[str]) -> Iterator[str]:
     """What a formula changes at size zero, but for values of the parts that the form adds."""
     try:
-        for name, value in formula().items():
+        found = formula()
+        for name, value in (found if isinstance(found, Mapping) else {"pace": found}).items():
             was = before[name]
             if name.partition(".")[0] in own:
                 continue

@@ -42,7 +42,7 @@ def causes(at: Context) -> Iterator[Cause]:
     yield from scaled(at, "cooling.cooler", {name: roles.scaled(name) for name in roles.coolers})
     if roles.thermostats or roles.switches:
         yield thermostat(at)
-    yield from scaled(at, "cooling.fan")
+    yield from fan(at)
     yield from scaled(at, "cooling.oil_flow")
 
 
@@ -121,6 +121,21 @@ def humidity(at: Context, ports: Sequence[str]) -> Cause:
 
     made = [extras.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
     return known.with_forms([extras.with_parts(made, known.shapes, as_keys=follows)])
+
+
+def fan(at: Context) -> Iterator[Cause]:
+    """A fan that turns slower, and takes less power, or one that is clogged, and takes as much for less air."""
+    slower = at.roles.failing("cooling.fan")
+    clogged = {part: {path: e for path, e in paths.items() if e == 1.0} for part, paths in slower.items()}
+    ways = {"turning slower": slower, "clogged": clogged} if clogged != slower else {"": slower}
+    forms = [
+        replace(form, name=", ".join(filter(None, (form.name, words))), weight=form.weight / len(ways))
+        for words, groups in ways.items()
+        for cause in scaled(at, "cooling.fan", groups)
+        for form in cause.forms
+    ]
+    if forms:
+        yield entry("cooling.fan", at).with_forms(forms)
 
 
 def thermostat(at: Context) -> Cause:

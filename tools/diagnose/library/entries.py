@@ -49,12 +49,7 @@ class Entry:
 
 
 def entry(name: str, at: Context) -> Entry:
-    """What the table says of a cause.
-
-    Args:
-        name: its id, or that of the kind of causes in the table
-        at: what it is made for
-    """
+    """What the table says of a cause by its id, or of a kind of causes by that in the table."""
     said = TABLE[name]
     acts_on, like = said.get("acts_on", ""), said.get("like", "")
     cause = Cause(

@@ -79,12 +79,7 @@ class Extras:
         return PartSpec(name, "ExtraLoss", values), (*nets, (f"{name}.lubricant", place.lubricant))
 
     def heat(self, inner: str, outer: str, number: int, of: int) -> Made:
-        """A heat source, and what it meets.
-
-        Args:
-            inner, outer: ports of the bodies it heats beside the oil
-            number, of: which of how many such sources
-        """
+        """A heat source, and what it meets: the oil, and ports of two bodies that it heats beside it."""
         name, roles = self._name(number, of), self.roles
         nets = ((f"{name}.oil", roles.oil_heat), (f"{name}.inner", inner), (f"{name}.outer", outer))
         return PartSpec(name, "ExtraHeat", self.open()), (*nets, (f"{name}.reading", roles.reading))
@@ -112,7 +107,7 @@ class Extras:
             places: where it may act
             shapes: of all forms; named as parameters of the extra part
             limits: regimes
-            as_keys: size, shapes and row -> parameters of the extra part, where they are not the same
+            as_keys: gives the parameters of the extra part, where the shapes are not these
             heats: port that takes the oil's share of the heat, where it is not the oil
         """
         made = [self.loss(place, k, len(places), heats) for k, place in enumerate(places)]
@@ -122,13 +117,7 @@ class Extras:
     def conductors(
         self, ports: Sequence[str], shapes: Iterable[Shape], limits: Sequence[Regime] = ()
     ) -> tuple[Form, ...]:
-        """Conductances to the room: one form for all bodies, one for each of several, one for each regime.
-
-        Args:
-            ports: where heat leaves the bodies
-            shapes: of all forms; named as parameters of the extra part
-            limits: regimes
-        """
+        """Conductances to the room from where heat leaves the bodies; forms as of `losses`."""
         made = [self.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
         return self.forms(made, [port.partition(".")[0] for port in ports], tuple(shapes), limits)
 
@@ -140,15 +129,7 @@ class Extras:
         limits: Sequence[Regime] = (),
         as_keys: Keys = as_they_are,
     ) -> tuple[Form, ...]:
-        """One form for all parts, one for each of several, one for each regime.
-
-        Args:
-            made: the parts
-            names: of their places
-            shapes: of all forms
-            limits: regimes
-            as_keys: size, shapes and row -> parameters of the extra part
-        """
+        """One form for all parts, one by name for each of several, one for each regime; arguments as of `losses`."""
         alone = [self.with_parts([part], shapes, None, as_keys) for part in made]
         single = [replace(form, name=name) for name, form in zip(names, alone, strict=True)]
         sides = [self.with_parts(made, shapes, limit, as_keys) for limit in limits]
@@ -157,14 +138,7 @@ class Extras:
     def with_parts(
         self, made: Sequence[Made], shapes: Iterable[Shape], limit: Regime | None = None, as_keys: Keys = as_they_are
     ) -> Form:
-        """One form in which some parts share the size.
-
-        Args:
-            made: the parts
-            shapes: of the form
-            limit: the regime, if any
-            as_keys: size, shapes and row -> parameters of the extra part
-        """
+        """One form in which some parts share the size, in a regime if there is one; arguments as of `losses`."""
         names = [part.name for part, _ in made]
 
         def values(theta: Theta, row: Row) -> Values:

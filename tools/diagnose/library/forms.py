@@ -193,12 +193,7 @@ class Context:
         return ca.exp(theta[exponent] * ca.log(smooth_abs(row.rise / self.ranges.rise, COOL)))
 
     def power(self, doc: str, sd: float, low: float, high: float) -> Size:
-        """A power [W] at the middle of the data.
-
-        Args:
-            doc: in words
-            sd, low, high: in shares of the typical loss
-        """
+        """A power [W] at the middle of the data; `sd`, `low` and `high` are shares of the typical loss."""
         P = self.ranges.loss
         return Size("P_ref", "W", f"{doc}, at the middle of the data", sd * P, low * P, high * P)
 
@@ -215,13 +210,7 @@ class Context:
 
 
 def weighed(general: Sequence[Form], single: Sequence[Form] = (), sides: Sequence[Form] = ()) -> tuple[Form, ...]:
-    """Forms with their shares of a cause's prior: for all parts, for each of several, for each regime.
-
-    Args:
-        general: forms for all parts; at least one
-        single: one for each part
-        sides: one for each regime
-    """
+    """Forms with their shares of a cause's prior: some for all parts, one for each of several, one for each regime."""
     kept = single if 1 < len(single) <= MOST_PLACES else ()
     places = (BESIDE if sides else ONE_PLACE) if kept else 0.0
     limited = SIDE * len(sides)
@@ -234,13 +223,7 @@ Paths = Iterable[str] | Mapping[str, float]
 
 
 def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Changes:
-    """Values times a factor.
-
-    Args:
-        paths: of the values
-        size: its name
-        law: factor of a size
-    """
+    """Values times the factor that a law gives for a size by its name."""
     exponents = paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
     return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
 

@@ -7,7 +7,7 @@ the log, from a date on, or as a drift.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ....model.machines.roles import Roles
@@ -28,11 +28,11 @@ class Knob:
 
     Args:
         name: in words
-        cause: identifier of the cause that it is where it has moved
+        cause: identifier of the cause that it is where it has moved; "" of what differs only
         doc: what has happened then
         unit: of z; "1" for the logarithm of a factor
-        usual: size of the cause that is usual [unit]
-        sd: standard deviation between machines of one type [unit]
+        usual: size of the cause that is usual [unit], of powers in the table as a share of the typical loss
+        sd: standard deviation between machines of one type; in the same way
         scaled: parameters multiplied by exp(exponent z): path -> exponent
         shifted: parameters to which z is added [SI]
         sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
@@ -69,7 +69,7 @@ WHENS = (
 def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
     """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move."""
     groups: dict[str, list[Knob]] = {}
-    for knob in found:
+    for knob in (k for k in found if k.cause):
         groups.setdefault(knob.cause, []).append(knob)
     return tuple(_cause(own) for own in groups.values())
 
@@ -93,10 +93,11 @@ def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
     return Form(name, weight, when.shapes, values=values, regime=FROM_THEN if when.shapes else {})
 
 
-def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
-    """All knobs that a machine and the sensors of its log have."""
-    rows = TABLE["knobs"]["rows"]
-    return (*_teeth(roles), *(knob for row in rows for knob in _parts(roles, **row)), *_sensors(sensors))
+def knobs(roles: Roles, sensors: Sequence[Sensor], loss: float) -> tuple[Knob, ...]:
+    """All knobs that a machine and the sensors of its log have; powers only where a typical loss [W] is known."""
+    found = (k for row in TABLE["knobs"]["rows"] for k in _parts(roles, **row) if k.unit != "W" or loss > 0)
+    parts = (replace(k, usual=loss * k.usual, sd=loss * k.sd) if k.unit == "W" else k for k in found)
+    return (*_teeth(roles), *parts, *_sensors(sensors))
 
 
 def _teeth(roles: Roles) -> Iterator[Knob]:
@@ -144,3 +145,5 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
         elif s.kind in GAINS:
             doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
             yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)
+            if s.kind == "torque" and s.offset_sd:
+                yield Knob(f"{s.name}: zero error", "", "", s.unit, s.offset_sd, s.offset_sd, sensor=s.name)

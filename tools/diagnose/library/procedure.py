@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-import casadi as ca
-
 from ....model.laws.smooth import smooth_max
 from .cause import Cause, Form, Num, Row, Theta, Values
 from .entries import entry
@@ -53,17 +51,13 @@ def order(at: Context) -> Cause:
     known, roles = entry("procedure.order", at), at.roles
     teeth = roles.scaled(*roles.parts("teeth"))
     shafts = roles.scaled(*roles.parts("bearing"), *roles.parts("seal"))
-    targets = {"cooling": (roles.cooling, 0.4), "teeth": (teeth, 0.3), "all losses": ((*teeth, *shafts), 0.3)}
-    if not shafts:
-        del targets["all losses"]
+    losses = (*teeth, *shafts) if shafts else ()
+    targets = {"cooling": (roles.cooling, 0.4), "teeth": (teeth, 0.3), "all losses": (losses, 0.3)}
     targets = {name: (paths, weight) for name, (paths, weight) in targets.items() if paths}
 
     def changing(paths: Sequence[str], course: Callable[[Theta, Row], Num]) -> Callable[[Theta, Row], Values]:
-        def values(theta: Theta, row: Row) -> Values:
-            log = theta["change"] * (course(theta, row) - theta["zero"])
-            return {path: row.base[path] * ca.exp(log) for path in paths}
-
-        return values
+        law = factors(paths, "change")
+        return lambda t, row: law({**t, "change": t["change"] * (course(t, row) - t["zero"])}, row)
 
     total = sum(weight for _, weight in targets.values())
     return known.with_forms(

@@ -1,4 +1,4 @@
-"""Instruments that do not show what is: one set of errors for every kind of probe and transducer.
+"""Instruments that do not show what is: one set of errors for every kind, and probes in the wrong place.
 
 An error is a size times a factor of the row: constant, in proportion to the reading, on one side of a speed, a load or
 the probe's own temperature, by direction, from a test on, moving steadily; or it is drawn anew with each mounting, or
@@ -12,15 +12,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
+from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta, Values
 from .entries import TABLE, entry
 from .forms import COURSES, FROM_THEN, LEAST_SPAN, PLACE, Context, Course, Regime, since
-from .probes import heated, lag, one_of, position, swapped, wrong
 
+THERMOMETERS = ("oil_temp", "wall_temp", "ambient")
+#: Excess over a body is smaller than over the room: a probe that is drawn to a body loses this much more of it.
+BODY = 3.0
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
+
+#: (size and shapes, row, the value the instrument should show) -> error of the reading over the size.
+Error = Callable[[Theta, Row, Num], Num]
 
 
 @dataclass(frozen=True)
@@ -56,29 +61,27 @@ NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": 
 
 @dataclass(frozen=True)
 class Mode:
-    """One way to err: factor on the size by (theta, row, true value), its shapes, and what else a form says.
+    """One way to err: its factor on the size, its shapes, and what else a form says.
 
     `turns`: a column of magnitudes may hold the error of the signed value, too, which turns with the direction.
     """
 
     name: str
     weight: float
-    factor: Callable[[Theta, Row, Num], Num]
+    factor: Error
     shapes: tuple[Shape, ...] = ()
     spread: str = ""
     regime: Mapping[str, str] | None = None
     turns: bool = False
 
 
-def turned(mode: Mode) -> Mode:
-    """The same error in the signed value of what a column shows as a magnitude."""
+def ways(mode: Mode, sensor: Sensor) -> tuple[Mode, ...]:
+    """The mode, and of a column of magnitudes the same error in the signed value, which turns with the direction."""
+    if not mode.turns or sensor.signs[0] == sensor.signs[1]:
+        return (mode,)
+    signed = replace(mode, factor=lambda theta, row, value: row.direction * mode.factor(theta, row, value))
     name = ", ".join(filter(None, (mode.name, "opposite signs")))
-    return replace(
-        mode,
-        name=name,
-        weight=TURNED * mode.weight,
-        factor=lambda theta, row, value: row.direction * mode.factor(theta, row, value),
-    )
+    return replace(mode, weight=(1 - TURNED) * mode.weight), replace(signed, name=name, weight=TURNED * mode.weight)
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -91,7 +94,27 @@ def causes(at: Context) -> Iterator[Cause]:
         if name == "ambient":
             yield from heated(at, own)
         yield from swapped(at, own)
-        yield from lag(at, own)
+
+
+def wrong(sensor: Sensor, size: str, error: Error) -> Form:
+    """A form in which one instrument errs: what it shows is wrong, or what drove the machine; a size by its name."""
+    if sensor.role == "given":
+
+        def truth(theta: Theta, row: Row) -> Values:
+            reading = row.sensors[sensor.name]
+            return {sensor.name: reading - theta[size] * error(theta, row, reading)}
+
+        return Form(truth=truth)
+
+    def shown(theta: Theta, row: Row, true: Values) -> Values:
+        return {sensor.name: true[sensor.name] + theta[size] * error(theta, row, true[sensor.name])}
+
+    return Form(shown=shown)
+
+
+def one_of(sensor: Sensor, own: Sequence[Sensor]) -> str:
+    """Name of a form for one of several instruments, "" for the only one."""
+    return sensor.name if len(own) > 1 else ""
 
 
 class _Instruments:
@@ -116,27 +139,20 @@ class _Instruments:
         offset, kind = max(s.offset_sd / max(self.scale[s.name], 0.1) for s in self.own), self.kind
         sd = share * max(kind.tolerance * offset, kind.share * self.typical, kind.least)
         high = max(kind.most * self.typical, 8 * sd)
-        larger = "" if len(set(self.scale.values())) == 1 else ", of the one that reads most, others in proportion"
-        return Size("error", kind.unit, doc + larger, sd, -high if signed else 0.0, high)
+        return Size("error", kind.unit, doc, sd, -high if signed else 0.0, high)
 
     def forms(self, modes: Sequence[Mode], size: str = "error") -> tuple[Form, ...]:
         """Each mode of each instrument of the kind; instruments share the weight."""
-        found = []
-        for sensor in self.own:
-            for mode in modes:
-                if mode.turns and sensor.signs[0] != sensor.signs[1]:
-                    found += [self._form(sensor, replace(mode, weight=(1 - TURNED) * mode.weight), size)]
-                    found += [self._form(sensor, turned(mode), size)]
-                else:
-                    found.append(self._form(sensor, mode, size))
-        return tuple(found)
+        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
+        return tuple(self._form(sensor, way, size) for sensor, way in pairs)
 
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
         scale = 1.0 if size == "gain" else self.scale[sensor.name]
         form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
-        name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
+        name = ", ".join(filter(None, (one_of(sensor, self.own), mode.name)))
         weight, regime = mode.weight / len(self.own), mode.regime or {}
-        return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
+        form = replace(form, name=name, weight=weight, scale=scale)
+        return replace(form, shapes=mode.shapes, spread=mode.spread, regime=regime)
 
     def cause(self, key: str, modes: Sequence[Mode], size: Size | None = None, acts_on: str = "") -> Cause:
         """A cause of this kind.
@@ -202,13 +218,59 @@ class _Instruments:
         return known.with_forms(forms, id=f"sensor.{self.name}.frozen", doc=doc)
 
 
-def sided(at: Context, probes: Sequence[Sensor]) -> list[Mode]:
-    """Errors on one side of a speed or a load that another instrument shows, or of what probes of one kind read.
+def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Oil probes that see something between the oil and the room, or the oil and a body."""
+    room = next((s for s in at.sensors if s.kind == "ambient"), None)
+    wall = next((s for s in at.sensors if s.kind == "wall_temp" and s.role == "read"), None)
+    read, known = [s for s in own if s.role == "read"], entry("sensor.oil_temp.position", at)
+    needs = {"a": at.first("speed"), "body": room and wall}
 
-    Args:
-        at: what they are made for
-        probes: of one kind; none: no side of what is read
-    """
+    def drawn(probe: Sensor) -> Callable[[Theta, Row, Values], Values]:
+        def shown(theta: Theta, row: Row, true: Values) -> Values:
+            oil, body, left = true[probe.name], theta.get("body", float(room is None)), 0.0
+            if room is not None:
+                left += (1 - body) * (oil - (row.sensors if room.role == "given" else true)[room.name])
+            if wall is not None:
+                left += BODY * body * (oil - true[wall.name])
+            return {probe.name: oil - theta["share"] * at.by_speed(row, theta, "a") * left}
+
+        return shown
+
+    if read and (room or wall):
+        shapes = tuple(shape for shape in known.shapes if needs[shape.name])
+        yield known.with_forms(Form(one_of(s, read), 1 / len(read), shapes, shown=drawn(s)) for s in read)
+
+
+def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Room probes in the warm air of the machine."""
+    known = entry("sensor.ambient.heated", at)
+    forms = [(s, wrong(s, "bias", lambda theta, row, value: at.by_rise(row, theta, "e"))) for s in own]
+    yield known.with_forms(
+        replace(form, name=one_of(s, own), weight=1 / len(own), shapes=known.shapes) for s, form in forms
+    )
+
+
+def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Thermometers of one kind that are exchanged with others."""
+    warm = [s for s in at.sensors if s.kind in THERMOMETERS and s.role == "read"]
+    pairs = [(a, b) for i, a in enumerate(warm) for b in warm[i + 1 :] if a in own and a.reads != b.reads]
+
+    def exchanged(a: str, b: str) -> Callable[[Theta, Row, Values], Values]:
+        def shown(theta: Theta, row: Row, true: Values) -> Values:
+            moved = theta["share"] * (true[b] - true[a])
+            return {a: true[a] + moved, b: true[b] - moved}
+
+        return shown
+
+    if pairs:
+        yield entry("sensor.*.swapped", at).with_forms(
+            (Form(f"{a.name} with {b.name}", 1 / len(pairs), shown=exchanged(a.name, b.name)) for a, b in pairs),
+            id=f"sensor.{own[0].kind}.swapped",
+        )
+
+
+def sided(at: Context, probes: Sequence[Sensor]) -> list[Mode]:
+    """Errors on one side of a speed or a load that another instrument shows, or of what probes of one kind read."""
     shown = [(q, at.first(kind)) for q, kind in (("w", "speed"), ("tau", "torque"))]
     limits = [Regime(q, above, s) for q, s in shown if s and at.ranges.varies(s) for above in (True, False)]
     low, high = (

@@ -18,15 +18,6 @@ from .forms import Context, factors, weighed
 
 #: A body gives no more than this share of its capacity.
 LEFT = 0.95
-#: A machine stands below this share of its typical speed, with as gradual a change.
-STANDS = 0.05
-
-
-def heat_causes(at: Context) -> Iterator[Cause]:
-    """All causes of heat that no shaft brings."""
-    yield external_source(at)
-    if "logs" in at.ranges.known:
-        yield parked(at)
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -125,7 +116,7 @@ def bodies(roles: Roles) -> tuple[str, tuple[str, ...]]:
     return inside, tuple(f"{name}.heat" for name in roles.outside) or (roles.oil_heat,)
 
 
-def external_source(at: Context) -> Cause:
+def heat_causes(at: Context) -> Iterator[Cause]:
     """Heat that comes from beside the machine, into one body of the housing or by the shaft."""
     known, (inside, outside) = entry("heat.external_source", at), bodies(at.roles)
     extras = Extras(known.part, at)
@@ -133,13 +124,4 @@ def external_source(at: Context) -> Cause:
     alone = [extras.with_parts([part], known.shapes) for part in made]
     sides = [extras.with_parts(made[-1:], known.shapes, limit) for limit in known.regimes]
     names = [port.partition(".")[0] if len(outside) > 1 else "" for port in outside]
-    return known.with_forms(weighed([replace(f, name=n) for f, n in zip(alone, names, strict=True)], sides=sides))
-
-
-def parked(at: Context) -> Cause:
-    """Heat while the machine stands."""
-    known, (inside, outside) = entry("heat.parked", at), bodies(at.roles)
-    extras, w = Extras(known.part, at), STANDS * at.ranges.mid["w"]
-    part, nets = extras.heat(inside, outside[-1], 0, 1)
-    part = replace(part, values={**part.values, "a": 0.0, "w_on": w, "w_side": -1.0, "w_width": w / 3})
-    return known.with_forms([extras.with_parts([(part, nets)], known.shapes)])
+    yield known.with_forms(weighed([replace(f, name=n) for f, n in zip(alone, names, strict=True)], sides=sides))

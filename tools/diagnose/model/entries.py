@@ -198,6 +198,12 @@ class Measured:
         """Number of entries."""
         return len(self.measured)
 
+    def over_rows(self, kind: int, *values: np.ndarray) -> np.ndarray:
+        """Values of entries (m,), those of a sensor over the rows of the campaign (k, n), NaN where it has none."""
+        mine, found = self.kind == kind, np.full((len(values), self.campaign.n), np.nan)
+        found[:, self.row[mine]] = [v[mine] for v in values]
+        return found
+
     def _features(self) -> np.ndarray:
         """Of the rows, in the order of `FEATURES`."""
         c = self.campaign

@@ -12,8 +12,10 @@ import numpy as np
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
 from ..library.knobs import Knob
+from .curves import Curves
 from .entries import Entries, Seen
 from .formula import Formula
+from .logs import Quadratics
 from .observe import Observed
 from .plant import Plant
 
@@ -28,21 +30,29 @@ class Logged(Observed):
         plant: the rig
         campaign: a row for each span, a test each
         knobs: what may differ
-        eta, H: log likelihood of the moves z of a span's knobs, eta z - z H z / 2 (n, k), (n, k, k)
+        told: what each span says of what moves of its knobs do
         root: columns by which the machine's knobs differ from its values, for independent normal numbers (k, k)
+        curves: moves of knobs -> what they do
     """
 
     def __init__(
-        self, plant: Plant, campaign: Campaign, knobs: Sequence[Knob], eta: np.ndarray, H: np.ndarray, root: np.ndarray
+        self,
+        plant: Plant,
+        campaign: Campaign,
+        knobs: Sequence[Knob],
+        told: Quadratics,
+        root: np.ndarray,
+        curves: Curves,
     ) -> None:
         names = [*(knob.name for knob in knobs), "day"]
         super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in names], {}, {})
-        self.place, self.root = {name: k for k, name in enumerate(names)}, root
-        told = [_told(*said, np.array([k.sd for k in knobs])) for said in zip(eta, H, strict=True)]
+        self.place, self.root, self.curves = {name: k for k, name in enumerate(names)}, root, curves
+        sd = np.array([k.sd for k in knobs])
+        own = [_told(eta, H, sd) for eta, H in zip(told.eta, told.H, strict=True)]
         #: Slopes of the entries by the knobs in their spans (m, k).
-        self.by = np.concatenate([B for _, B in told])
-        row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told])
-        measured = np.concatenate([y for y, _ in told])
+        self.by = np.concatenate([B for _, B in own])
+        row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in own])
+        measured = np.concatenate([y for y, _ in own])
         none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
         self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 
@@ -57,14 +67,16 @@ class Logged(Observed):
 
     def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
         """The entries and their derivatives; as for any campaign."""
+        does, slope = self.curves.at(self.moves(parts))
         by = [self.by @ self.root, np.zeros((self.m, 1))]
         for formula, t in parts:
             _, by_t, _ = formula.physics(t, {}, self.sensors, self.features)
             ways = [
-                self.by[:, [self.place[name]]] * way[self.row] for name, way in zip(formula.paths, by_t, strict=False)
+                self.by[:, [k := self.place[name]]] * (slope[:, [k]] * way)[self.row]
+                for name, way in zip(formula.paths, by_t, strict=False)
             ]
             by.append(np.sum(ways, axis=0))
-        shown = (self.by * (self.root @ z[:-1] + self.moves(parts))[self.row]).sum(axis=1)
+        shown = (self.by * (self.root @ z[:-1] + does)[self.row]).sum(axis=1)
         return Seen(shown, np.concatenate(by, axis=1), np.zeros((self.m, len(self.given), self.height)))
 
     def tangents(

@@ -37,6 +37,32 @@ BLOCK = 64
 
 
 @dataclass(frozen=True, eq=False)
+class Quadratics:
+    """What n groups say of k knobs: eta (n, k), H (n, k, k)."""
+
+    eta: np.ndarray
+    H: np.ndarray
+
+    def spread(self, covariance: np.ndarray) -> Quadratics:
+        """The same of what the groups scatter about, with a covariance (k, k)."""
+        A = np.eye(self.H.shape[1]) + self.H @ covariance
+        both = np.linalg.solve(A, np.concatenate([self.H, self.eta[:, :, None]], axis=2))
+        H = both[:, :, :-1]
+        return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
+
+    def times(self, share: float) -> Quadratics:
+        """The same from a share of the samples."""
+        return Quadratics(share * self.eta, share * self.H)
+
+    def summed(self, group: np.ndarray, n: int) -> Quadratics:
+        """Summed over the members of each of n groups."""
+        eta, H = np.zeros((n, self.eta.shape[1])), np.zeros((n, *self.H.shape[1:]))
+        np.add.at(eta, group, self.eta)
+        np.add.at(H, group, self.H)
+        return Quadratics(eta, H)
+
+
+@dataclass(frozen=True, eq=False)
 class Passed:
     """One pass over windows.
 
@@ -52,6 +78,17 @@ class Passed:
     error: np.ndarray
     variance: np.ndarray
     shown: np.ndarray
+
+    def told(self, at: np.ndarray, slopes: np.ndarray | float = 1.0) -> Quadratics:
+        """What each window says of its knobs, or of as many numbers that follow them.
+
+        Args:
+            at: these numbers there (N, k)
+            slopes: of them by the knobs (N, k)
+        """
+        by = np.broadcast_to(1 / np.asarray(slopes), at.shape)
+        H = self.curvature * by[:, :, None] * by[:, None, :]
+        return Quadratics(self.slope * by + (H @ at[:, :, None])[:, :, 0], H)
 
 
 class Filter:

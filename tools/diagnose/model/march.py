@@ -67,7 +67,6 @@ def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
     """All tests as runs: a dwell for each row, a stop before each but the first. A logged dwell is read along it, too.
 
     Args:
-        c: the campaign
         rows: which of its rows each is (tests, H); the last of the test where it has fewer
         starts: by how much the start temperature of a test follows the given readings of its first row (tests, given)
 
@@ -130,7 +129,6 @@ def march(
     """Run all phases.
 
     Args:
-        plant: the model
         phases: N runs
         x0: temperatures and speeds at the start (N, nx)
         p: parameters of each row at each setting (S, N, H, np): the first is run; the derivatives are taken along its

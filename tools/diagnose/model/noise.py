@@ -29,6 +29,8 @@ LAW = 0.15
 PLACEMENT_ERROR = 0.08
 #: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
 REMAINDER = {"temperature": 0.8, "other": 0.0005}
+#: Over how long a way in the conditions, in units of their spread, a remainder is smooth.
+SMOOTH = 1.3
 #: Variance of a smoothed course over that of independent samples, which those of a probe are not quite.
 ALLOWED = 1.5
 #: What the model leaves of a course [K].
@@ -96,10 +98,7 @@ def smooth_features(campaigns: Sequence[Measured], points: int) -> list[tuple[np
     """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
     and squares (n, k). The last `points` campaigns do not count in where they are zero and one.
     """
-    raw = []
-    for o in campaigns:
-        given = [o.sensors[s.name] for s in o.given]
-        raw.append(np.array([*given, o.campaign.direction]))
+    raw = [np.array([*(o.sensors[s.name] for s in o.given), o.campaign.direction]) for o in campaigns]
     whole = np.concatenate(raw[: len(raw) - points], axis=1)
     centre, spread = whole.mean(axis=1, keepdims=True), whole.std(axis=1, keepdims=True)
     kept = (spread > 1e-9 * np.maximum(abs(whole).max(axis=1, keepdims=True), 1e-12))[:, 0]
@@ -140,12 +139,12 @@ def _remainder_sd(campaigns: Sequence[Measured], name: str) -> float:
     return REMAINDER["temperature"] if kind.endswith("_temp") else float(REMAINDER["other"] * size)
 
 
-def alike(o: Measured, length: float = 1.3) -> np.ndarray:
+def alike(o: Measured) -> np.ndarray:
     """Correlation (m, m) of what is smooth in the conditions and the running order, for one sensor."""
     features = np.column_stack([conditions(o), 2.0 * o.campaign.progress])[o.row]
-    features = np.column_stack([features, length / LENGTH * shares(o)]) if o.campaign.series else features
+    features = np.column_stack([features, SMOOTH / LENGTH * shares(o)]) if o.campaign.series else features
     distance = ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)
-    return np.asarray(np.exp(-0.5 * distance / length**2))
+    return np.asarray(np.exp(-0.5 * distance / SMOOTH**2))
 
 
 def stacked(parts: Sequence[tuple[int, np.ndarray]], sizes: Sequence[int]) -> np.ndarray:
@@ -288,10 +287,9 @@ def start_error(o: Measured) -> np.ndarray:
 
 
 def fading(o: Measured, linear: np.ndarray) -> np.ndarray:
-    """Features (m, k) of a remainder that fades along courses, first dwells and later ones apart.
+    """Features (m, k), by those of the conditions (n, c), of a remainder that fades along courses.
 
-    Args:
-        linear: features of the conditions (n, c)
+    First dwells and later ones are apart.
     """
     later = o.half[o.row] > 0
     left = [(1 - shares(o)) ** power * side for power in FADING for side in (later, ~later)]

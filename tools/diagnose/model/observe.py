@@ -196,11 +196,11 @@ class _Look:
     def _nuisances(self) -> None:
         for k, nuisance in enumerate(self.o.nuisances):
             for path, exponent in nuisance.paths.items():
-                factor = np.exp(exponent * nuisance.sd * self.z[k])
-                value = self._base(path) * factor
-                slope = {i: own * factor for i, own in self.slopes.get(path, {}).items()}
-                self.values[path] = value
-                self.slopes[path] = total([(1.0, slope), (exponent * nuisance.sd, {k: value})])
+                q, rate = self.o.plant.flat.parameters[self.o.plant.place[path]], exponent * nuisance.sd
+                wanted = self._base(path) * (factor := np.exp(rate * self.z[k]))
+                self.values[path] = np.clip(wanted, q.low, q.high)  # several nuisances may move it
+                held = 1.0 * np.isclose(wanted, self.values[path], rtol=1e-9, atol=0.0)
+                self.slopes[path] = total([(factor * held, self.slopes.get(path, {})), (rate * held, {k: wanted})])
 
     def _base(self, path: str) -> np.ndarray:
         return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]

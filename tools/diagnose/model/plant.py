@@ -118,12 +118,7 @@ class Plant:
         shown: Sequence[str],
         tried: Sequence[str] = (),
     ) -> Plant:
-        """The superset of a rig and what is added to it.
-
-        Args:
-            spec: the rig, driven as the campaign drives it
-            additions: parts of causes and nuisances
-            knobs, given, shown, tried: see the class
+        """The superset of a rig, driven as the campaign drives it, and what causes and nuisances add; see the class.
 
         Raises:
             GearheatError: the superset has no sound equations

@@ -78,11 +78,7 @@ class Extended:
         return {path: float(value) for path, value in own if path in known}
 
     def text(self, uncertain: Mapping[str, Mapping[str, float]]) -> str:
-        """The text of a rig file that every command reads.
-
-        Args:
-            uncertain: reason -> path -> what its value changes by at one standard deviation
-        """
+        """The text of a rig file, with reason -> path -> what its value changes by at one standard deviation."""
         told = replace(self.scenario, joint_uncertainties=uncertain)
         return "\n".join(f"# {line}" for line in self.head) + "\n" + rig_text(told)
 
@@ -210,8 +206,8 @@ def values(found: Found, z: np.ndarray) -> dict[str, float]:
     plant, told = found.problem.data.plant, dict[str, float]()
     for nuisance, change in zip(found.problem.data.nuisances, z, strict=False):
         for path, exponent in nuisance.paths.items():
-            before = told.get(path, float(plant.p[plant.place[path]]))
-            told[path] = before * float(np.exp(exponent * nuisance.sd * change))
+            q, before = plant.flat.parameters[plant.place[path]], told.get(path, float(plant.p[plant.place[path]]))
+            told[path] = float(np.clip(before * np.exp(exponent * nuisance.sd * change), q.low, q.high))
     return told
 
 

@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from ...show import pages
 from ...show.drawing import COLOURS, empty, legend, svg
+from ..answer.channels import levels
 from ..answer.evidence import Picture, Rows, View
 from ..answer.findings import Findings
 from . import phrases, tables
@@ -37,6 +38,8 @@ DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
 DRAWN = 600
 #: More than these groups of readings have no line through their means.
 GROUPS = 8
+#: Readings with no gap of this share of their range between them are a group.
+CLOSE = 0.05
 #: Values of a quantity that each have a tick.
 FEW = 3
 
@@ -205,9 +208,7 @@ def _trend(panel: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
     """A line through the means of readings that stand close together, where there are a few such groups."""
     good = np.isfinite(x) & np.isfinite(y)
     x, y = x[good], y[good]
-    order = np.argsort(x, kind="stable")
-    gaps = np.diff(x[order]) > 0.05 * np.ptp(x) if len(x) else np.zeros(0, dtype=bool)
-    groups = np.split(order, np.flatnonzero(gaps) + 1)
+    groups = levels(x, CLOSE) if len(x) else []
     if 1 < len(groups) <= GROUPS:
         panel.plot([x[g].mean() for g in groups], [y[g].mean() for g in groups], color=colour, linewidth=1.5)
 

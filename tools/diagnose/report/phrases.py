@@ -181,7 +181,8 @@ def gross(found: GrossReading) -> str:
     if found.shown is not None and found.expected is not None:
         shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))
         text += f" shows {shown}, the other readings say {expected}"
-    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. It is set aside."
+    also = f" A wrong {name_all(found.instead, 'or')} in this row explains it as well." if found.instead else ""
+    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. It is set aside.{also}"
 
 
 def nuisance(found: NuisanceOff) -> str:

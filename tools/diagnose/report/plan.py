@@ -56,13 +56,7 @@ def _classes(plan: Plan) -> dict[str, list[str]]:
 
 
 def text(plan: Plan, *, everything: bool = False, width: int | None = None) -> str:
-    """The plan as text.
-
-    Args:
-        plan: the plan
-        everything: all experiments, and all causes in the table of what the design tells
-        width: columns of the screen, None where there is none
-    """
+    """The plan as text of some width; everything: all experiments, and all causes in the table of the design."""
     found = [paragraph("answer", sentence(plan), width)] if plan.verdict else []
     if plan.now is not None:
         found.append(drawn(_experiments(plan, everything), width))

@@ -55,14 +55,7 @@ def text(findings: Findings, *, everything: bool = False, width: int | None = No
 
 
 def paragraph(word: str, line: str, width: int | None = None, left: int = LEFT) -> str:
-    """A text with a word to its left.
-
-    Args:
-        word: to the left
-        line: the text
-        width: columns of the screen, None where there is none
-        left: columns of the word
-    """
+    """A text with a word in so many columns to its left; for the width see `text`."""
     return textwrap.fill(
         line,
         min(width or WIDTH, WIDTH),
@@ -75,11 +68,7 @@ def paragraph(word: str, line: str, width: int | None = None, left: int = LEFT) 
 
 def drawn(table: Table, width: int | None = None) -> str:
     """A table as text. No word or number is broken: where there is no room, the last columns of sentences are left out,
-    and named; the others go on below.
-
-    Args:
-        table: the table
-        width: columns of the screen, None where there is none
+    and named; the others go on below. For the width see `text`.
     """
     words = [[cell.split() for cell in column] for column in zip(table.columns, *table.rows, strict=True)]
     least = [max((len(word) for cell in column for word in cell), default=0) for column in words]

@@ -92,8 +92,8 @@ def quality(findings: Findings) -> list[Table]:
             "Repeated points in running order",
             ("point", "channel", "test", "order", "mean of the directions", "half their difference"),
             repeats,
-            "Deviations from the mean of the point, temperatures over the room. A mean that moves is the rig, the room"
-            " or a probe; a difference that moves is a torque transducer or the direction.",
+            "Measured less calibrated, less its mean at the point. A mean that moves is the rig, the room or a probe; a"
+            " difference that moves is a torque transducer or the direction.",
         ),
     ]
 

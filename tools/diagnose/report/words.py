@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..answer.findings import APART, UNEXPLAINED, Answer, Cause, Findings, Said
+from ....model.core.faults import name_all
+from ..answer.findings import APART, UNEXPLAINED, Answer, Cause, Findings, Hypothesis, Said
 from . import phrases
 from .phrases import name_of, names_of, sentence
 
@@ -21,6 +22,8 @@ TOO_GOOD = 0.99
 SCATTER = 1.5
 #: Answers beside the first two are listed from this probability on.
 LISTED = 0.05
+#: Something is wrong where nothing has less than this, else it may be; hypotheses with as much are not excluded.
+DOUBT = 0.1
 #: Of several causes those act that have more.
 LIKELY = 0.5
 #: Longest list on the first screen.
@@ -80,38 +83,46 @@ def _verdict(findings: Findings) -> str:
     off = phrases.calibration(findings, FEW)
     if findings.verdict != "consistent":
         return _claim(findings) + (f" Beside it the rig differs from its file: {off}." if off else "")
+    said = "The data agree with the model within the stated accuracies."
     if off:
-        return f"No cause is needed, but the rig differs from its file: {off}."
-    if apart := phrases.as_filed(findings):
-        return f"The data agree with the model once it is calibrated; as filed it is off: {apart}."
-    return "The data agree with the model within the stated accuracies."
+        said = f"The data agree with the model only with values far from those of its file: {off}."
+    elif apart := phrases.as_filed(findings):
+        said = f"The data agree with the model once it is calibrated; as filed it is off: {apart}."
+    possible = [f"{names_of(h.causes)} ({phrases.percent(h.probability, h.mc_error)})" for h in _possible(findings)]
+    return said + (f" Not excluded: {'; '.join(possible[:FEW])}." if possible else "")
+
+
+def _possible(findings: Findings) -> list[Hypothesis]:
+    """Hypotheses that a verdict without a cause does not exclude."""
+    return [h for h in findings.hypotheses if h.causes and h.probability >= DOUBT]
 
 
 def _claim(findings: Findings) -> str:
     """What is wrong."""
     answers, left = findings.answers, findings.remainder
+    maybe = _maybe(findings)
+    wrong = f"Something {'may be' if maybe else 'is'} wrong"
     shown = left.channels[:2] if left else ()
     where = " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in shown)
     seen = f", seen in {where}" if where else ""
     if findings.verdict == "unexplained" or not answers:
-        sure = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
+        chance = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
         best = next((a for a in answers if a.causes != ((UNEXPLAINED,),)), None)
         closest = f" The closest known cause is {_probable(best)}." if best else ""
-        return f"Something is wrong that no cause of the library explains{sure}{seen}.{closest}"
+        return f"{wrong} that no cause of the library explains{chance}{seen}{maybe}.{closest}"
     more = left is not None and left.probability >= 0.5
     beside = f" Something that the library lacks acts beside {{}}{seen}." if more else ""
     if any(len(a.causes) > TOGETHER for a in answers):
         return _together(findings) + beside.format("them")
     if findings.verdict == "ambiguous":
         if len(answers) == 1:
-            none = phrases.percent(findings.nothing)
-            return f"Something may be wrong: {_probable(answers[0])}, or nothing is ({none})."
+            return f"{wrong}: {_probable(answers[0])}{maybe}."
         listed = [a for k, a in enumerate(answers) if k < MOST and (k < 2 or a.probability >= LISTED)]
         listed = list(answers) if len(answers) == len(listed) + 1 else listed
         rest = answers[len(listed) :]
         chance = phrases.percent(sum(a.probability for a in rest))
         unlikely = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{unlikely}."
+        return f"{wrong}, and the data leave open what: {'; '.join(map(_probable, listed))}{unlikely}{maybe}."
     first = answers[0]
     if limits := _at_bound(findings, first):
         return (
@@ -143,7 +154,14 @@ def _together(findings: Findings) -> str:
         "More likely than not": names(c for c in others if chances[c] >= LIKELY),
         "Perhaps": names(c for c in others if chances[c] < LIKELY),
     }
-    return " ".join(["Several causes act together.", *(f"{words}: {own}." for words, own in groups.items() if own)])
+    maybe = _maybe(findings)
+    said = f"Several causes {'may act' if maybe else 'act'} together{maybe}."
+    return " ".join([said, *(f"{words}: {own}." for words, own in groups.items() if own)])
+
+
+def _maybe(findings: Findings) -> str:
+    """That nothing may be wrong, as the end of a sentence; empty where something is."""
+    return f", or nothing is wrong ({phrases.percent(findings.nothing)})" if findings.nothing >= DOUBT else ""
 
 
 def _left_open(findings: Findings, first: Answer) -> str:
@@ -172,7 +190,7 @@ def _do(findings: Findings) -> str:
     """What to do now, the most pressing first."""
     steps = []
     if gross := findings.data_quality.gross:
-        rows = ", ".join(f"row {g.row} ({g.channel})" for g in gross[:MOST])
+        rows = ", ".join(f"row {g.row} ({name_all([g.channel, *g.instead], 'or')})" for g in gross[:MOST])
         steps.append(f"Check the reading{'s' if len(gross) > 1 else ''} in {rows} in your records.")
     if findings.verdict == "consistent":
         if findings.data_quality.nuisances:
@@ -185,12 +203,15 @@ def _do(findings: Findings) -> str:
                 "Give healthy data, too (--reference, --reference-logs): these alone do not tell a machine that is"
                 " built otherwise from a fault that was there from their first on."
             )
+        elif tests := _exposing(findings, (c for h in _possible(findings)[:1] for c in h.causes)):
+            steps.append(f"To test what is not excluded: {tests}")
         else:
             steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
         return " ".join(steps)
     if warning := phrases.doubt(findings):
         steps.append(warning)
-    exposing = _exposing(findings)
+    first = findings.answers[0].causes if findings.answers else ()
+    exposing = _exposing(findings, (c for group in first for c in group))
     if findings.verdict == "explained" and exposing:
         steps.append(f"To confirm it: {exposing}")
     elif (e := next(iter(findings.next_experiment), None)) and e.separation_after > e.separation_before + RAISED:
@@ -206,9 +227,8 @@ def _do(findings: Findings) -> str:
     return " ".join(steps)
 
 
-def _exposing(findings: Findings) -> str:
-    """The experiment that would show the causes of the first answer."""
-    members = [c for group in findings.answers[0].causes for c in group] if findings.answers else []
+def _exposing(findings: Findings, members: Iterable[str]) -> str:
+    """The experiments that would show causes."""
     texts = [text for m in members if (c := findings.cause(m)) for text in c.exposes.rstrip(".").split("; ") if text]
     return "; ".join(dict.fromkeys(texts)) + "." if texts else ""
 
