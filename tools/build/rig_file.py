@@ -227,9 +227,9 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "bearing": bearing,
             "life": _num(life),
             "dips": sizing.stands_in_oil(made, k, bearing),
-            "use": f"{s.kind}_bearing",
+            "kind": kind,
         }
-        for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
+        for end, bearing, life, kind in zip("ab", s.bearings, s.lives, s.kinds, strict=True)
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
     support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
@@ -239,7 +239,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "gears": gears,
         "span": s.span,
         "bearings": places,
-        "kind": s.kind,
+        "kinds": s.kinds,
         "preload": s.preload,
         "d": s.d,
         "d_torsion": s.d_torsion,

@@ -27,8 +27,8 @@ WEB = 0.003
 @dataclass(frozen=True)
 class Shaft:
     """A shaft: torque, speed [1/s], diameters of its larger and smaller seat and that by torsion, places of its gears
-    and bearing b, both bearings, which are of one kind, with their outside diameters and lives [h], how much too
-    large their bore is for the pinion that is cut on the shaft, and their preload [N] where no teeth load them.
+    and bearing b, both bearings with outside diameters, lives [h] and kinds, how much too large their bore is for the
+    pinion that is cut on the shaft, and their preload [N] where no teeth load them.
     """
 
     T: float
@@ -41,7 +41,7 @@ class Shaft:
     bearings: tuple[str, str]
     outer: tuple[float, float]
     lives: tuple[float, float]
-    kind: str
+    kinds: tuple[str, str]
     excess: float
     preload: float
 
@@ -90,8 +90,8 @@ def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     wheels = [s for s in stages if not isinstance(s, PlanetaryStage)]  # forces on sun and carrier are in balance
     gears = [(s.forces[1], s.x, s.r_2) for s in before if s in wheels]
     gears += [(s.forces[0], s.x, s.r_1) for s in behind if s in wheels]
-    kinds = (CHOICES if gears else UNLOADED if behind else HELD)[bearings]
-    bore = d if gears or behind else min(CARRIER * d, largest_bore([k for k in kinds if largest_bore([k]) >= d][:1]))
+    pairs = (CHOICES if gears else UNLOADED if behind else HELD)[bearings]
+    bore = d if gears or behind else min(CARRIER * d, next(most for p in pairs if (most := largest_bore([p])) >= d))
     span = max(s.x + s.b / 2 for s in wheels) + side if gears else BARE * bore
     if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
         beyond = side + stages[0].b / 2
@@ -109,9 +109,9 @@ def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     return [
         Shaft(
             *(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (a.D, b.D), lives),
-            kind,
+            (a.kind, b.kind),
             excess,
-            PRELOAD * min(a.C, b.C) if kind == "tapered" and not gears else 0.0,
+            PRELOAD * min(a.C, b.C) if a.Y and not gears else 0.0,
         )
-        for kind, (a, b), lives, excess in choose(bore, most, [math.hypot(*F) for F in (near, far)], axial, n, kinds)
+        for (a, b), lives, excess in choose(bore, most, [math.hypot(*F) for F in (near, far)], axial, n, pairs)
     ]
