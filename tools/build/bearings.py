@@ -44,6 +44,11 @@ class Size:
     C: float
     Y: float
 
+    @property
+    def steep(self) -> bool:
+        """Whether a tapered one carries more along the shaft than across."""
+        return 0 < self.Y < 1
+
     def life(self, F_r: float, pushed: float, other: float, n: float) -> float:
         """Rated life [h] at a speed [1/s], as ISO 281 has it.
 
@@ -69,7 +74,7 @@ def sizes(kind: str) -> tuple[Size, ...]:
         v = {key: si_of(entry.values[key]) for key in ("d", "D", "C") if key in entry.values}
         if name.startswith(SERIES[kind]) and "C" in v:
             found.append(Size(name, kind, v["d"], v["D"], v["C"], float(entry.values.get("Y", 0.0))))
-    return tuple(sorted(found, key=lambda size: (size.D, size.C)))
+    return tuple(sorted(found, key=lambda size: (size.D, size.d, size.C)))
 
 
 def largest_bore(pairs: Sequence[tuple[str, str]]) -> float:
@@ -113,8 +118,8 @@ def _choose_one(among: Sequence[Size], most: float, load: tuple[float, float, fl
     """The smallest bearing with the wanted life, of no more than a bore if there is one, else that of the longest life.
     Of tapered ones as large, the steep one, which rubs more, is for more axial than radial load.
     """
-    rated, sign = [(size, size.life(*load, n)) for size in among], 1 if load[1] > load[0] else -1
+    rated, along = [(size, size.life(*load, n)) for size in among], load[1] > load[0]
     lasting = [pair for pair in rated if pair[1] >= LIFE]
     slim = [pair for pair in lasting if pair[0].d <= most + 1e-6]
     last = max(rated, key=lambda pair: pair[1])
-    return min(slim or lasting, key=lambda pair: (pair[0].D, sign * pair[0].Y), default=last)
+    return min(slim or lasting, key=lambda pair: (pair[0].D, pair[0].steep != along), default=last)

@@ -32,8 +32,8 @@ N_D = 1e6
 LIPS = (15.0, 35.0)
 #: How far the ratio may be from that of the name plate untold [1].
 OFF = 0.01
-#: Usual loads of a stage: of a worm wheel its torque over a3, of other gears K* [Pa].
-LOADED = {"worm": (0.2e6, 1.3e6), "gears": (1.0e6, 6.0e6)}
+#: Usual loads of a stage [Pa].
+LOADED = {"worm": ("the wheel's torque over a3", 0.2e6, 1.3e6), "gears": ("K*", 1.0e6, 6.0e6)}
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -97,7 +97,8 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:
-        ways = ("" if around.cooler else "--cooler, ") if around.fan or around.cooler else "--fan or --cooler, "
+        cooler = "" if around.cooler else f"--cooler (for {sizes['loss_W'] / 1000:.2g} kW), "
+        ways = cooler if around.fan or around.cooler else f"--fan or {cooler}"
         yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
@@ -132,10 +133,7 @@ def _too_fast(made: Unit) -> Iterator[str]:
 def _loaded(made: Unit) -> Iterator[str]:
     """A last stage whose load does not suit the centre distance that is given."""
     s = made.stages[-1]
-    named, (low, high) = (
-        ("the wheel's torque over a3" if s.kind == "worm" else "K*"),
-        LOADED.get(s.kind, LOADED["gears"]),
-    )
+    named, low, high = LOADED.get(s.kind, LOADED["gears"])
     if not low < s.intensity < high:
         own = MAKE[s.kind](s.kind, s.u, s.T, s.n, None).a
         yield (

@@ -263,39 +263,21 @@ def _foot(made: Unit, base: str) -> dict[str, Any] | None:
     """Foot of a unit, two strips along the housing, or its flange, and what they stand on."""
     if base == "free":
         return None
+    outline, D, wide = made.length * made.width, min(made.length, made.height), 1 + 2 * BEYOND
+    A, A_frame, beyond = STRIPS * outline, 2 * 2 * BEYOND * outline, BEYOND * made.length
     if base == "flange":
-        D, wide = min(made.length, made.height), 1 + 2 * BEYOND
-        A = math.pi / 4 * (1 - SPIGOT**2) * D**2
-        d, bolts = _bolted(made, A)
-        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {bolts}"
-        return {
-            "base": base,
-            "A": A,
-            "count": BOLTS,
-            "d": d,
-            "A_frame": 2 * math.pi / 4 * (wide**2 - 1) * D**2,
-            "t_frame": FRAME * made.wall,
-            "L_frame": BEYOND * D,
-            "rule": f"{rule}; a steel plate {FRAME:g} times as thick as the walls, {wide:g} times as wide, in air",
-        }
-    outline, beyond = made.length * made.width, BEYOND * made.length
+        A, beyond = math.pi / 4 * (1 - SPIGOT**2) * D**2, BEYOND * D
+        A_frame = 2 * math.pi / 4 * (wide**2 - 1) * D**2
+    d, bolts = _bolted(made, A)
+    strips, thick = f"two strips of {STRIPS / 2:g} of the housing's width", f"{FRAME:g} times as thick as the walls"
+    ring = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside"
     on = {
-        "concrete": "heat spreads below its outline into a concrete floor",
-        "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
+        "concrete": f"{strips}, {bolts}; heat spreads below its outline into a concrete floor",
+        "steel": f"{strips}, {bolts}; a steel frame {thick}, {wide:g} times as long, in air",
+        "flange": f"{ring}, {bolts}; a steel plate {thick}, {wide:g} times as wide, in air",
     }
-    d, bolts = _bolted(made, STRIPS * outline)
-    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {bolts}"
-    return {
-        "base": base,
-        "A": STRIPS * outline,
-        "count": BOLTS,
-        "d": d,
-        "outline": outline,
-        "A_frame": 2 * 2 * beyond * made.width,
-        "t_frame": FRAME * made.wall,
-        "L_frame": beyond,
-        "rule": f"{rule}; {on[base]}",
-    }
+    found: dict[str, Any] = {"base": base, "A": A, "count": BOLTS, "d": d, "outline": outline, "rule": on[base]}
+    return found | {"A_frame": A_frame, "t_frame": FRAME * made.wall, "L_frame": beyond}
 
 
 def compute_bodies(made: Unit) -> dict[str, Any]:
