@@ -6,6 +6,7 @@ import math
 import re
 
 import casadi as ca
+import gearheat as gh
 import pytest
 from for_each import thin
 from gearheat.model.errors import ScenarioError
@@ -14,7 +15,7 @@ from gearheat.model.units import si_of
 from gearheat.scenarios.entries import catalogue
 from gearheat.scenarios.load import load
 from gearheat.tools.build import rig_file, sizing
-from gearheat.tools.build.bearings import LIFE
+from gearheat.tools.build.bearings import LIFE, TAPERED, choose
 from gearheat.tools.build.new import new
 from gearheat.tools.build.plausible import usual
 from gearheat.tools.build.shafts import find_tight
@@ -88,7 +89,7 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     plate = ("--stages", "worm", "--ratio", 60, "--power", "3 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "hot", *plate, "-o", tmp_path / "hot.toml")
     assert answer.code == 0, answer.err
-    assert "needs --fan or --cooler, fins, or a larger housing" in answer.err
+    assert "needs --fan or --cooler (for 1.3 kW), fins, or a larger housing" in answer.err
     assert "the largest loss is that of teeth" in answer.err and "for worms PAG" in answer.err
     plate = ("--stages", "helical,helical", "--ratio", 20, "--power", "600 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "weak", *plate, "--bearings", "ball", "-o", tmp_path / "weak.toml")
@@ -123,7 +124,7 @@ def test_a_ratio_that_whole_teeth_do_not_have_is_told():
 def test_what_turns_too_fast_for_a_bath_is_told(gearheat, tmp_path):
     plate = ("--stages", "helical", "--ratio", 5, "--power", "5 MW", "--oil", "ISO VG 46", "--cooler")
     answer = gearheat("new", "a", *plate, "--speed", "10000 rpm", "-o", tmp_path / "fast.toml")
-    for words in ("moves at 87 m/s", "n d_m = 2.2e+06 mm/min", "rubs at 73 m/s", "friction_schlenk, v_sum = 60"):
+    for words in ("moves at 87 m/s", "n d_m = 2.2e+06 mm/min", "rubs at 68 m/s", "friction_schlenk, v_sum = 60"):
         assert words in answer.err
     plate = ("--stages", "helical", "--ratio", 5, "--power", "5 kW", "--speed", "6000 rpm")
     assert "motors" not in gearheat("new", "a", *plate, "-o", tmp_path / "a.toml").err
@@ -141,7 +142,7 @@ def test_it_is_what_one_would_draw(made):
     _, answer = made("two")
     first, second = answer.json["stages"]
     assert (first["a"], second["a"]) == pytest.approx((0.09, 0.112))  # the rig helical_two_stage has 0.1 and 0.125
-    assert answer.json["oil_degC"] == pytest.approx(62.9, abs=4)
+    assert answer.json["oil_degC"] == pytest.approx(57.3, abs=4)
     assert all(life > LIFE for shaft in answer.json["bearings"] for life in shaft["lives_h"])
 
 
@@ -601,11 +602,38 @@ def test_bearings_can_be_built(stages, ratio, kW):
             assert all((a + b) / 2 < stage.a for a, b in zip(one, other, strict=True))
 
 
+def test_a_unit_of_two_stages_and_55_kw_stands_still_air():
+    """Makers sell it without a fan. Where two balls do not last one locates, and cylindrical rollers carry more."""
+    made = new("a", stages="helical,helical", ratio=10, power="55 kW", speed="1480 rpm", oil="ISO VG 320")
+    assert 75 < made.sizes["oil_degC"] < 115 and 0.96 < made.sizes["efficiency"] < 0.98
+    parts = {part.name: part for part in made.scenario.spec.parts}
+    for shaft, located, free in (("input", "b", "a"), ("middle", "a", "b")):
+        assert parts[f"{shaft}_bearing_{located}"].type == "DeepGrooveBallBearing"
+        assert parts[f"{shaft}_bearing_{free}"].type == "CylindricalRollerBearing"
+        assert parts[f"{shaft}_support"].values["axial_share_a"] == (located == "a")
+    told = gh.rate_by_method(made, "iso14179-1")
+    assert 0.96 < told["eta"]["method"] < 0.98
+
+
+@pytest.mark.parametrize(("axial", "steep"), [(2e3, False), (9e3, False), (3e4, True)])
+def test_steep_tapered_bearings_are_for_axial_loads(axial, steep):
+    ((a, b), lives, _), *_ = choose(0.065, 0.08, (1e4, 8e3), axial, 2.0, (TAPERED,))
+    assert min(lives) > LIFE and a.D == b.D
+    assert (a.name.startswith("SKF 313"), b.name.startswith("SKF 313")) == (steep, steep)
+
+
+def test_friction_of_tapered_bearings_goes_by_the_external_axial_load():
+    """As their maker has it (SKF6000, table 2a): the thrust of their radial loads is not in it."""
+    made = new("a", stages="helical", ratio=4, power="15 kW", speed="1450 rpm", bearings="roller")
+    kinds = {part.values["radial_thrust"] for part in made.scenario.spec.parts if part.type == "TaperedRollerBearing"}
+    assert kinds == {"left out"}
+
+
 def test_bearings_that_cannot_be_built_are_told(gearheat, tmp_path):
     plate = ("--stages", "helical", "--ratio", "4", "--power", "250 kW", "--speed", "1500 rpm")
     answer = gearheat("new", "a", *plate, "--centre-distance", "160 mm", "--cooler", "-o", tmp_path / "a.toml")
-    assert "SKF 31320: a bore of 100 mm, 30 mm more than the pinion" in answer.err
-    assert "bearings beside each other overlap by 130 mm" in answer.err
+    assert "SKF 32316 and SKF 32317: a bore of 85 mm, 15 mm more than the pinion" in answer.err
+    assert "bearings beside each other overlap by 88 mm" in answer.err
 
 
 @pytest.mark.parametrize("stages", ["helical,helical", "bevel,helical", "planetary"])
