@@ -118,7 +118,7 @@ def _choose_one(among: Sequence[Size], most: float, load: tuple[float, float, fl
     """The smallest bearing with the wanted life, of no more than a bore if there is one, else that of the longest life.
     Of tapered ones as large, the steep one, which rubs more, is for more axial than radial load.
     """
-    rated, along = [(size, size.life(*load, n)) for size in among], load[1] > load[0]
+    rated, along = [(size, size.life(*load, n)) for size in among], load[1] > max(load[0], load[2])
     lasting = [pair for pair in rated if pair[1] >= LIFE]
     slim = [pair for pair in lasting if pair[0].d <= most + 1e-6]
     last = max(rated, key=lambda pair: pair[1])

@@ -35,8 +35,8 @@ OIL = 835.0
 ENDS = 2.0
 #: Diameter of a fan over the geometric mean of width and height of the housing [1].
 SWEEP = 0.6
-#: Air along the walls over the speed of the fan's tips [1]. Thermal power of a 22 kW unit, three stages, is 1.08, 1.13,
-#: 1.18 and 1.26 of that without it at 710, 900, 1120, 1400 rpm (air 1.25 m/s, 40 degC, oil 95 degC); a maker has 1.12,
+#: Air along the walls over the speed of the fan's tips [1]. Thermal power of a 22 kW unit, three stages, is 1.08, 1.12,
+#: 1.17 and 1.24 of that without it at 710, 900, 1120, 1400 rpm (air 1.25 m/s, 40 degC, oil 95 degC); a maker has 1.12,
 #: 1.18, 1.25 and 1.32 for one fan on parallel shafts (Rossi, UT.D 123 rev. 3, table 7).
 AIR = 0.15
 #: Power of a fan over rho n3 D5 [1].
