@@ -21,7 +21,10 @@ SERIES = {
 }
 #: Pairs that hold a shaft: the bearing that locates, and the other one. Cylindrical rollers carry more than a ball, so
 #: beside one they are at the end with more load.
-BALLS, TAPERED, ROLLERS, FLOATING = ("ball",) * 2, ("tapered",) * 2, ("cylindrical",) * 2, ("ball", "cylindrical")
+BALLS = ("ball", "ball")
+TAPERED = ("tapered", "tapered")
+ROLLERS = ("cylindrical", "cylindrical")
+FLOATING = ("ball", "cylindrical")
 #: What the bearings of a unit roll on, and the pairs of shafts with tooth forces, those that rub least first.
 CHOICES = {"auto": (BALLS, FLOATING, TAPERED), "ball": (BALLS,), "roller": (TAPERED,)}
 #: Those of shafts without, and of shafts that planets drive, which a pair that is set against each other holds.
@@ -118,7 +121,7 @@ def _choose_one(among: Sequence[Size], most: float, load: tuple[float, float, fl
     """The smallest bearing with the wanted life, of no more than a bore if there is one, else that of the longest life.
     Of tapered ones as large, the steep one, which rubs more, is for more axial than radial load.
     """
-    rated, along = [(size, size.life(*load, n)) for size in among], load[1] > max(load[0], load[2])
+    rated, along = [(size, size.life(*load, n)) for size in among], load[1] > load[0]
     lasting = [pair for pair in rated if pair[1] >= LIFE]
     slim = [pair for pair in lasting if pair[0].d <= most + 1e-6]
     last = max(rated, key=lambda pair: pair[1])
