@@ -22,10 +22,11 @@ from ..show.console import writable, write
 from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions, outside_of
+from .allowed import check
 from .data_sheet import Wanted, wanted_of
 from .plausible import WARM, no_load, notes, usual
 from .rig_file import Around, around_of, lost, text
-from .sizing import Unit, check, unit
+from .sizing import Unit, unit
 
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
@@ -77,14 +78,14 @@ def new(
     Args:
         name: of the rig
         stages: from the input, such as "helical,helical"; bevel first, worm last, planetary
-            ones behind all others
-        ratio: speed of the input over that of the output
+            ones behind all others, the other way round where the ratio is below 1
+        ratio: speed of the input over that of the output; below 1 the input is the slow shaft
         power: at the input, such as "7.5 kW"
         speed: of the input, such as "1450 rpm"
         oil: entry of the catalogue, or what a name plate has, such as "CLP PG 460"
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
             or have no room
-        fan: on the input shaft
+        fan: on the fast shaft
         cooler: of the oil, for the losses at the name plate
         base: what its foot stands on, "concrete" or a "steel" frame; "flange" on a steel plate; "free" on rubber, or
             where it hangs on its shaft
@@ -161,7 +162,10 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         "schema": "gearheat.new/1",
         "file": str(path),
         "ratio": made.ratio,
-        "stages": [{k: getattr(s, k) for k in (*STAGE_KEYS, SIZES[s.kind])} for s in made.stages],
+        "stages": [
+            {k: getattr(s, k) for k in (*STAGE_KEYS, SIZES[s.kind])}
+            for s in made.stages[:: -1 if made.increases else 1]
+        ],
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
         "oil_degC": rest["oil.T"] - 273.15,

@@ -10,12 +10,12 @@ import numpy as np
 
 from ...model.files import tables
 from . import sizing
+from .allowed import last_ratio
 from .bearings import LIFE
 from .rig_file import Around
 from .shafts import gaps
 from .sizing import Unit
-from .stages import WormStage
-from .teeth import K_STAR, MAKE, T_WORM
+from .teeth import MAKE
 
 #: Name plates, the efficiencies that units of their kinds have, and what lowers a loss.
 MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
@@ -32,8 +32,8 @@ N_D = 1e6
 LIPS = (15.0, 35.0)
 #: How far the ratio may be from that of the name plate untold [1].
 OFF = 0.01
-#: Usual load of a stage over that of the rule.
-LOADED = (0.4, 2.4)
+#: Usual loads of a stage [Pa].
+LOADED = {"worm": ("the wheel's torque over a3", 0.2e6, 1.3e6), "gears": ("K*", 1.0e6, 6.0e6)}
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -42,7 +42,7 @@ def usual(stages: str | Sequence[str], kW: float, ratio: float) -> tuple[float, 
     """Efficiencies [%] of units of such stages, power and ratio."""
     kinds, known = stages.split(",") if isinstance(stages, str) else list(stages), MACHINES["efficiency"]
     if kinds[-1] == "worm":
-        slow = sizing.last_ratio(kinds, ratio)
+        slow = last_ratio(kinds, ratio)
         ends = [float(most) for most in MACHINES["worm"]]
         low, high = (float(np.interp(slow, ends, side)) for side in zip(*MACHINES["worm"].values(), strict=True))
         if len(kinds) > 1:
@@ -97,7 +97,8 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:
-        ways = ("" if around.cooler else "--cooler, ") if around.fan or around.cooler else "--fan or --cooler, "
+        cooler = "" if around.cooler else f"--cooler (for {sizes['loss_W'] / 1000:.2g} kW), "
+        ways = cooler if around.fan or around.cooler else f"--fan or {cooler}"
         yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
@@ -132,13 +133,12 @@ def _too_fast(made: Unit) -> Iterator[str]:
 def _loaded(made: Unit) -> Iterator[str]:
     """A last stage whose load does not suit the centre distance that is given."""
     s = made.stages[-1]
-    rule, named = (T_WORM, "the wheel's torque over a3") if isinstance(s, WormStage) else (K_STAR, "K*")
-    if not LOADED[0] < s.intensity / rule < LOADED[1]:
-        low, high = (part * rule / 1e6 for part in LOADED)
-        own = MAKE[s.kind](s.kind, s.u, s.T, s.n, s.x, None).a
+    named, low, high = LOADED.get(s.kind, LOADED["gears"])
+    if not low < s.intensity < high:
+        own = MAKE[s.kind](s.kind, s.u, s.T, s.n, None).a
         yield (
-            f"--centre-distance: {named} is {s.intensity / 1e6:.3g} N/mm2, usual {low:.2g} to {high:.2g}: the load asks"
-            f" for {1000 * own:.0f} mm."
+            f"--centre-distance: {named} is {s.intensity / 1e6:.3g} N/mm2, usual {low / 1e6:.2g} to {high / 1e6:.2g}:"
+            f" the load asks for {1000 * own:.0f} mm."
         )
 
 

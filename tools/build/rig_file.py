@@ -15,32 +15,36 @@ from ...model.parts.joints import PRESSED
 from ...model.units import to_si
 from ...scenarios.ranges import RANGES
 from . import sizing
-from .bearings import LIGHT
-from .shafts import APART, OVERHANG, SIDE
-from .sizing import GAP, Unit
-from .stages import DRAG, KINDS, Y_W, BevelStage, PlanetaryStage, Stage, WormStage
+from .bearings import LIGHT, PRELOAD
+from .shafts import APART, OVERHANG
+from .sizing import Unit
+from .stages import DRAG, KINDS, Y_W, BevelStage, PlanetaryStage, WormStage
 from .teeth import FACE, K_BEVEL, K_STAR, SLIM, T_WORM, WIDTH
 
 #: Fastest air along a housing [m/s].
 STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")
 #: Density of steel [kg/m3].
 STEEL = 7850.0
-#: Density of cast iron [kg/m3].
-IRON = 7200.0
+#: Density [kg/m3], heat capacity [J/(kg.K)] and conductivity [W/(m.K)] of what housings are cast of.
+CAST = {"cast iron": (7200.0, 500.0, 50.0), "aluminium": (2700.0, 900.0, 150.0)}
+#: Centre distance below which makers cast housings of worms alone of aluminium [m].
+SMALL = 0.1
 #: Density of oil at which churning is stated [kg/m3].
 OIL = 835.0
-#: Diameter of a fan over the smaller side of the housing [1].
-SWEEP = 0.8
-#: Air along the walls over the speed of the fan's tips [1]. Thermal power of a 22 kW unit, three stages, is 1.10, 1.15,
-#: 1.20 and 1.28 of that without it at 710, 900, 1120, 1400 rpm (air 1.25 m/s, 40 degC, oil 95 degC); a maker has 1.12,
+#: How much longer shafts are than the distance of their bearings, over their diameter [1].
+ENDS = 2.0
+#: Diameter of a fan over the geometric mean of width and height of the housing [1].
+SWEEP = 0.6
+#: Air along the walls over the speed of the fan's tips [1]. Thermal power of a 22 kW unit, three stages, is 1.08, 1.12,
+#: 1.17 and 1.24 of that without it at 710, 900, 1120, 1400 rpm (air 1.25 m/s, 40 degC, oil 95 degC); a maker has 1.12,
 #: 1.18, 1.25 and 1.32 for one fan on parallel shafts (Rossi, UT.D 123 rev. 3, table 7).
-AIR = 0.12
+AIR = 0.15
 #: Power of a fan over rho n3 D5 [1].
 FAN = 3.0
 #: How much warmer the oil is than the water or air of its cooler [K].
 COOLED = 50.0
-#: Iron of ribs and flanges over that of the walls [1].
-RIBBED = 0.25
+#: Metal of ribs, fins and flanges, and what it is over that of the walls [1]; of worms fitted to makers' masses (NMRV).
+RIBBED = {"gears": ("cast iron", 0.25), "worm": ("cast iron", 0.6), "small worm": ("aluminium", 1.45)}
 #: Height of a rib over its thickness [1].
 RIBS = 2.5
 #: Speed of the air along a housing in a room with little draught [m/s].
@@ -60,9 +64,9 @@ STRIPS = 2 * 0.15
 #: Inner over outer diameter of the ring on which a flange stands [1].
 SPIGOT = 0.77
 #: Thickness of a steel frame over that of the wall [1].
-FRAME = 2.0
+FRAME = 3.0
 #: How far it reaches beyond foot or flange, at either end, over their length [1].
-BEYOND = 0.5
+BEYOND = 0.75
 #: Speed at which churning is stated, 200 rpm [rad/s].
 CHURNED = 200 * math.pi / 30
 
@@ -125,20 +129,25 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float
     n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     worm = isinstance(made.stages[0], WormStage)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
+    names = names[:: -1 if made.increases else 1]
     values = {
         "doc": doc,
         "speed": speed,
+        "slow": names[-1],
         "efficiency": efficiency,
-        "load": made.stages[0].T * made.ratio * efficiency,
+        "load": made.stages[0].T * max(made.ratio, 1.0) * efficiency,
         "oil": oil,
         "bath": sizing.bath(made),
-        "splash": sizing.splash(made) | {"r": "stage_1.r_1" if worm else _reach(made.stages[0], 0)},
-        "below": sizing.BELOW,
+        "splash": sizing.splash(made) | {"r": f"stage_{made.numbers[0]}.r_1" if worm else _reach(made, 0)},
+        "below": made.below,
+        "holds": f" for {1e6 * sizing.SUMP:g} l of oil a kW" if made.below > sizing.BELOW * made.wall else "",
         "reached": 100 * sizing.REACHED,
-        "side": SIDE,
-        "gap": GAP,
+        "side": sizing.side_of(made.stages),
+        "gap": made.wall,
         "overhang": OVERHANG,
         "apart": APART,
+        "ends": ENDS,
+        "preload": PRELOAD,
         "own_load": 0.0 if all(s.places for s in made.shafts) else LIGHT,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
@@ -151,7 +160,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float
         "air": around.air,
         "draught": "beside a motor that cools itself" if around.air >= BLOWN else "with little draught",
         "boxed": around.boxed,
-        **_bodies(made),
+        **compute_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
     templates.filters |= {"json": json.dumps, "at": _at}
@@ -180,7 +189,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
-        shape |= {"needles": f"planet_bearing_{k + 1}", "drag": DRAG}
+        shape |= {"needles": f"planet_bearing_{made.numbers[k]}", "drag": DRAG}
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
         shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
@@ -192,21 +201,25 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         if made.centre and k == len(made.stages) - 1:
             rule = f"F_t/(b d_1) (u + 1)/u of {s.intensity / 1e6:.3g} N/mm2 by a = {_mm(s.a)} mm of a data sheet"
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
-    found: dict[str, Any] = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    own = made.numbers[k]
+    found: dict[str, Any] = {"name": f"stage_{own}", "churning": f"churning_{own}", "wetting": f"oil_gears_{own}"}
     found |= {"driver": "pinion", "driven": "wheel", "needles": None} | shape
     found |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule}
-    found |= {"c": 0.5 * OIL * CHURNED**3 * s.swept, "dips": sizing.dips(s), "r": _reach(s, k)}
+    found |= {"c": 0.5 * OIL * CHURNED**3 * s.swept, "dips": sizing.dips(s), "r": _reach(made, k)}
     return found | {"height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
 
 
-def _reach(s: Stage, k: int) -> str:
+def _reach(made: Unit, k: int) -> str:
     """Radius of what moves the oil: that of the wheel, or how far planets reach."""
-    return f"{_mm(s.reach)} mm" if isinstance(s, PlanetaryStage) else f"stage_{k + 1}.r_2"
+    s = made.stages[k]
+    return f"{_mm(s.reach)} mm" if isinstance(s, PlanetaryStage) else f"stage_{made.numbers[k]}.r_2"
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s = made.shafts[k]
-    radii = [f"stage_{k}.r_2"] * (k > 0) + [f"stage_{k + 1}.r_1"] * (k < len(made.stages))
+    radii = [f"stage_{own}.r_2" for own in made.numbers[:k][-1:]] + [
+        f"stage_{own}.r_1" for own in made.numbers[k : k + 1]
+    ]
     places = [
         {
             "name": f"{names[k]}_bearing_{end}",
@@ -214,9 +227,9 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "bearing": bearing,
             "life": _num(life),
             "dips": sizing.stands_in_oil(made, k, bearing),
-            "use": f"{s.kind}_bearing",
+            "kind": kind,
         }
-        for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
+        for end, bearing, life, kind in zip("ab", s.bearings, s.lives, s.kinds, strict=True)
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
     support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
@@ -226,15 +239,16 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "gears": gears,
         "span": s.span,
         "bearings": places,
-        "kind": s.kind,
+        "kinds": s.kinds,
+        "preload": s.preload,
         "d": s.d,
         "d_torsion": s.d_torsion,
     }
 
 
 def _fan(made: Unit) -> dict[str, float]:
-    """A fan as wide as a cowl on the smaller side of the housing holds: air along the walls, and its torque."""
-    D = SWEEP * min(made.width, made.height)
+    """A fan that a cowl on the end of the housing holds: air along the walls, and its torque."""
+    D = SWEEP * math.sqrt(made.width * made.height)
     return {"D": D, "k_v": AIR * D / 2, "k": FAN * 1.2 * D**5 / (2 * math.pi) ** 3, "share": AIR}
 
 
@@ -249,56 +263,45 @@ def _foot(made: Unit, base: str) -> dict[str, Any] | None:
     """Foot of a unit, two strips along the housing, or its flange, and what they stand on."""
     if base == "free":
         return None
+    outline, D, wide = made.length * made.width, min(made.length, made.height), 1 + 2 * BEYOND
+    A, A_frame, beyond = STRIPS * outline, 2 * 2 * BEYOND * outline, BEYOND * made.length
     if base == "flange":
-        D, wide = min(made.length, made.height), 1 + 2 * BEYOND
-        A = math.pi / 4 * (1 - SPIGOT**2) * D**2
-        d, bolts = _bolted(made, A)
-        rule = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside, {bolts}"
-        return {
-            "base": base,
-            "A": A,
-            "count": BOLTS,
-            "d": d,
-            "A_frame": 2 * math.pi / 4 * (wide**2 - 1) * D**2,
-            "t_frame": FRAME * made.wall,
-            "L_frame": BEYOND * D,
-            "rule": f"{rule}; a steel plate {FRAME:g} times as thick as the walls, {wide:g} times as wide, in air",
-        }
-    outline, beyond = made.length * made.width, BEYOND * made.length
+        A, beyond = math.pi / 4 * (1 - SPIGOT**2) * D**2, BEYOND * D
+        A_frame = 2 * math.pi / 4 * (wide**2 - 1) * D**2
+    d, bolts = _bolted(made, A)
+    strips, thick = f"two strips of {STRIPS / 2:g} of the housing's width", f"{FRAME:g} times as thick as the walls"
+    ring = f"a ring of {_mm(round(D, 3))} mm, the smaller side of the housing, {SPIGOT:g} of it inside"
     on = {
-        "concrete": "heat spreads below its outline into a concrete floor",
-        "steel": f"a steel frame {FRAME:g} times as thick as the walls, {1 + 2 * BEYOND:g} times as long, in air",
+        "concrete": f"{strips}, {bolts}; heat spreads below its outline into a concrete floor",
+        "steel": f"{strips}, {bolts}; a steel frame {thick}, {wide:g} times as long, in air",
+        "flange": f"{ring}, {bolts}; a steel plate {thick}, {wide:g} times as wide, in air",
     }
-    d, bolts = _bolted(made, STRIPS * outline)
-    rule = f"two strips of {STRIPS / 2:g} of the housing's width, {bolts}"
-    return {
-        "base": base,
-        "A": STRIPS * outline,
-        "count": BOLTS,
-        "d": d,
-        "outline": outline,
-        "A_frame": 2 * 2 * beyond * made.width,
-        "t_frame": FRAME * made.wall,
-        "L_frame": beyond,
-        "rule": f"{rule}; {on[base]}",
-    }
+    found: dict[str, Any] = {"base": base, "A": A, "count": BOLTS, "d": d, "outline": outline, "rule": on[base]}
+    return found | {"A_frame": A_frame, "t_frame": FRAME * made.wall, "L_frame": beyond}
 
 
-def _bodies(made: Unit) -> dict[str, float]:
+def compute_bodies(made: Unit) -> dict[str, Any]:
     """Capacities, conductances and the box."""
     slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
     seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
-    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
-    mass = (1 + RIBBED) * IRON * made.area * made.wall
+    shafts = sum(STEEL * math.pi / 4 * (s.d**2 * s.span + ENDS * s.d_torsion**3) for s in made.shafts)
+    kind = sizing.kind_of_box(made.stages)
+    metal, share = RIBBED["small worm" if kind == "worm" and made.stages[0].a < SMALL else kind]
+    density, c, k = CAST[metal]
+    mass = (1 + share) * density * made.area * made.wall
     return {
+        "metal": metal,
+        "k": k,
+        "c": c,
+        "ribbed": f"{share:g} of the walls' metal",
         "inertia": sum(STEEL * s.inertia / i**2 for s, i in zip(made.stages, slow, strict=True)),
         "C_gears": 470 * STEEL * sum(s.volume for s in made.stages),
         "C_shafts": 470 * shafts,
         "mass": mass,
-        "C_half": 500 * mass / 2,
+        "C_half": c * mass / 2,
         "wall": made.wall,
         "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
-        "A_fins": 2 * RIBBED * made.area,
+        "A_fins": 2 * share * made.area,
         "fin_height": RIBS * made.wall,
         "ribs": RIBS,
         "area": made.area,

@@ -8,36 +8,37 @@ stands, what dips into it and what it wets.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any
 
 from ...model.errors import ScenarioError
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
-from .bearings import CHOICES, UNLOADED, largest_bore
+from .allowed import IN_LINE, LAST, check, first_ratio
 from .data_sheet import Wanted
-from .shafts import SHEAR, SIDE, Shaft, draw_shafts
-from .stages import KINDS, LEAST, MOST, BevelStage, PlanetaryStage, Stage, WormStage
-from .teeth import MAKE
+from .shafts import Shaft, draw_shafts, find_tight
+from .stages import BevelStage, PlanetaryStage, Stage, WormStage
+from .teeth import CENTRES, MAKE, larger
 
-#: How much whole numbers of teeth may add to a ratio [1].
-ROUNDED = 1.05
-#: Kinds of stages of which a centre distance may be given.
-CENTRED = ("spur", "helical", "worm")
-#: Of the box around the gears, what is room between them and its walls [m].
-ROOM = (0.040, 0.050, 0.080)
-#: Kinds of stages that stand last: a worm behind helical stages, planets behind any gears or other planets.
-LAST = "worm"
-IN_LINE = "planetary"
-#: Between gears [m].
-GAP = 0.010
+#: Thickness of walls: that of the smallest ones [m], and what is added of the largest stage [1].
+WALL = 0.003, 0.025
+#: From a gear to the middle of a bearing, in thicknesses of a wall; gears, tips and walls have one between them [1].
+SIDE = 2.5
+#: From there to the end of the housing [1].
+END = 4.0
+#: Least width of a housing over its largest centre distance [1], fitted to makers' (Flender H1, NMRV): bearings and the
+#: foot ask for it; the hub of the wheel of a worm that is alone is a hollow shaft.
+WIDE = {"worm": 1.4, "gears": 1.1}
+#: Below the tips [1].
+BELOW = 4.0
 #: How deep the smallest wheel dips, in modules.
 DIP = 3.0
+#: Least oil of a sump over the power [m3/W], fitted to Flender H1 of 60 to 600 kW: below a single stage it is deeper.
+SUMP = 1.1e-7
 #: Share of what is below the level that is oil [1].
 FILLED = 0.8
-#: Room below the tips [m].
-BELOW = 0.040
 #: Share of the housing's volume that is oil where no level follows from wheels.
 SHARE = 0.16
 #: Share of the walls that bath and splash reach [1].
@@ -48,8 +49,8 @@ ALONG = 0.5
 
 @dataclass(frozen=True)
 class Unit:
-    """A gear unit: ratio that is asked for, stages, shafts, the box around them; of a data sheet the oil [m3] and the
-    last centre distance [m].
+    """A gear unit: ratio that is asked for, stages and shafts from the fast one on, the box around them and what is
+    free below tips; of a data sheet the oil [m3] and the last centre distance [m].
     """
 
     asked: float
@@ -59,13 +60,24 @@ class Unit:
     length: float
     width: float
     height: float
+    below: float
     volume: float | None = None
     centre: float | None = None
 
     @property
+    def increases(self) -> bool:
+        """Whether the input is the slow shaft."""
+        return self.asked < 1
+
+    @property
     def ratio(self) -> float:
         """Of all stages."""
-        return math.prod(s.u for s in self.stages)
+        return math.prod(s.u for s in self.stages) ** (-1 if self.increases else 1)
+
+    @property
+    def numbers(self) -> list[int]:
+        """Of the stages as they are here, from the fast shaft on, counted from the input."""
+        return list(range(1, len(self.stages) + 1))[:: -1 if self.increases else 1]
 
     @property
     def turn(self) -> int:
@@ -90,7 +102,7 @@ def unit(
 
     Args:
         kinds: of the stages, from the input on, keys of `KINDS`
-        ratio: speed of the input over that of the output
+        ratio: speed of the input over that of the output; below 1 the input is the slow shaft
         power: at the input [W]
         speed: of the input [rad/s]
         bearings: "ball", "roller", or "auto" for rollers where balls do not last or have no room
@@ -100,38 +112,89 @@ def unit(
         ScenarioError: unknown kinds, or more than so many stages of so much can do
     """
     check(kinds, ratio, power, speed, bearings, wanted)
-    T, n, x = power / speed, speed / (2 * math.pi), SIDE
+    kinds, fast = (kinds, speed) if ratio >= 1 else (kinds[::-1], speed / ratio)
+    centres = [None] * (len(kinds) - 1) + [wanted.centre]
+    while True:
+        stages = _stages(kinds, max(ratio, 1 / ratio), power / fast, fast / (2 * math.pi), centres)
+        shafts = draw_shafts(stages, bearings)
+        tight = find_tight(stages, shafts) - {len(kinds) - 1 if wanted.centre else -1}
+        if not tight or max(stages[k].a for k in tight) > CENTRES[-1] / 2000:
+            break
+        centres = [larger(max(s.a, centres[k] or 0.0)) if k in tight else centres[k] for k, s in enumerate(stages)]
+    last, wall = stages[-1], _wall(stages)
+    span = last.x + last.b / 2 + side_of(stages) + sum(s.span for s in (shafts[0], shafts[-1]) if not s.places)
+    box = 0.0, span + 2 * END * wall, 0.0, BELOW * wall
+    drawn = _around(Unit(ratio, stages, shafts, wall, *box, wanted.volume, wanted.centre))
+    return _boxed(drawn if wanted.box else _deepened(drawn, power), wanted)
+
+
+def _stages(
+    kinds: Sequence[str], ratio: float, T: float, n: float, centres: Sequence[float | None]
+) -> tuple[Stage, ...]:
+    """Stages by load, or of centre distances, side by side."""
     found: list[Stage] = []
-    left = ratio
     for k, kind in enumerate(kinds):
-        centre = wanted.centre if k == len(kinds) - 1 else None
-        made = MAKE[kind](kind, _share(left, kinds[k:]), T, n, x, centre)
-        found.append(made)
-        T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
-    span = x - GAP + SIDE
-    shafts = draw_shafts(found, span, bearings)
-    wall = max(0.008, 0.025 * found[-1].along + 0.003)
-    tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
-    length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
-    height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
-    if isinstance(found[-1], WormStage):  # the wheel stands on the worm, gears before it at the worm's end
-        length = shafts[-2].span + 0.090 + sum(s.b + GAP for s in found[:-1])
-        height = max(s.a + sum(pair) for s, pair in zip(found, tips, strict=True)) + 0.080 + 2 * wall
-    elif isinstance(found[-1], PlanetaryStage):  # one behind the other, gears before them beside the axis
-        ring = max(s.reach + 4 * s.m_n for s in found if isinstance(s, PlanetaryStage))
-        gears = [(s, tip) for s, tip in zip(found, tips, strict=True) if not isinstance(s, PlanetaryStage)]
-        beside = sum(s.along for s, _ in gears) + sum(_first(found[0], shafts[0]) for _ in gears[:1])
-        length = max(beside, ring) + ring + 0.040 + 2 * wall
-        height = max([2 * ring + 0.040, *(2 * max(tip) + 0.080 for _, tip in gears)]) + 2 * wall
-    else:
-        length += _first(found[0], shafts[0])
-    drawn = Unit(ratio, tuple(found), shafts, wall, length, span + 0.090, height, wanted.volume, wanted.centre)
-    return _boxed(drawn, wanted)
+        found.append(made := MAKE[kind](kind, first_ratio(ratio, kinds[k:]), T, n, centres[k]))
+        T, n, ratio = T * made.u, n / made.u, ratio / made.u
+    wall = _wall(found)
+    least = WIDE[kind_of_box(found)] * max((s.a for s in found if s.kind != IN_LINE), default=0.0) - 2 * END * wall
+    side = max(SIDE * wall, (least - sum(s.b + wall for s in found) + wall) / 2)
+    x = accumulate((s.b + wall for s in found), initial=side)
+    return tuple(replace(s, x=start + s.b / 2) for s, start in zip(found, x, strict=False))
 
 
-def _first(stage: Stage, shaft: Shaft) -> float:
-    """How far the first gear reaches beyond its axis, or the shaft of a bevel pinion into the housing."""
-    return shaft.span if isinstance(stage, BevelStage) else stage.r_1 + stage.m_n
+def kind_of_box(stages: Sequence[Stage]) -> str:
+    """What the shares of a housing go by: a worm that is alone, or gears."""
+    return LAST if [s.kind for s in stages] == [LAST] else "gears"
+
+
+def side_of(stages: Sequence[Stage]) -> float:
+    """From the first and the last gear to the middle of a bearing [m]."""
+    return stages[0].x - stages[0].b / 2
+
+
+def _wall(stages: Sequence[Stage]) -> float:
+    """Thickness of the walls."""
+    return round(WALL[0] + WALL[1] * max(s.along for s in stages), 4)
+
+
+def _around(drawn: Unit) -> Unit:
+    """The unit in the box around its gears."""
+    stages, wall = drawn.stages, drawn.wall
+    tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in stages]
+    beyond, room = 4 * wall, (3 + BELOW) * wall
+    length = sum(s.along for s in stages) + tips[-1][1] + beyond + _first(stages[0])
+    height = 2 * max(max(pair) for pair in tips) + room
+    if isinstance(stages[-1], WormStage):  # the wheel stands on the worm, gears before it at the worm's end
+        length = drawn.shafts[-2].span + 2 * END * wall + sum(s.b + wall for s in stages[:-1])
+        height = max(s.a + sum(pair) for s, pair in zip(stages, tips, strict=True)) + room
+    elif isinstance(stages[-1], PlanetaryStage):  # one behind the other, gears before them beside the axis
+        ring = max(s.reach + 4 * s.m_n for s in stages if isinstance(s, PlanetaryStage))
+        gears = [(s, tip) for s, tip in zip(stages, tips, strict=True) if not isinstance(s, PlanetaryStage)]
+        beside = sum(s.along for s, _ in gears) + sum(_first(stages[0]) for _ in gears[:1])
+        length = max(beside, ring) + ring + beyond
+        height = max([2 * ring + beyond, *(2 * max(tip) + room for _, tip in gears)])
+    return replace(drawn, length=length, height=height)
+
+
+def _deepened(drawn: Unit, power: float) -> Unit:
+    """The unit with a sump that holds the oil which the power asks for, or a data sheet has where that is less."""
+    oil = bath(replace(drawn, volume=None))
+    if oil["level"] is None:
+        return drawn
+    lacks = min(SUMP * power, drawn.volume or math.inf) - oil["volume"] / 1000
+    more = max(lacks, 0.0) / FILLED / _floor(drawn)
+    return replace(drawn, height=drawn.height + more, below=drawn.below + more)
+
+
+def _floor(made: Unit) -> float:
+    """Of the sump [m2]."""
+    return (made.length - 2 * made.wall) * (made.width - 2 * made.wall)
+
+
+def _first(stage: Stage) -> float:
+    """How far the first gear reaches beyond its axis; a bevel pinion ends at the wall, its bearings stand outside."""
+    return 0.0 if isinstance(stage, BevelStage) else stage.r_1 + stage.m_n
 
 
 def _boxed(made: Unit, wanted: Wanted) -> Unit:
@@ -139,7 +202,8 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
     drawn = made.length, made.width, made.height
     box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in drawn)
     found = replace(made, length=box[0], width=box[1], height=box[2])
-    least = [side - room for side, room in zip(drawn, ROOM, strict=True)]
+    room = 2 * made.wall, 2 * (END - 1) * made.wall, made.wall + made.below
+    least = [side - part for side, part in zip(drawn, room, strict=True)]
     if any(side < need for side, need in zip(box, least, strict=True)):
         need = replace(made, length=least[0], width=least[1], height=least[2]).area
         raise ScenarioError(
@@ -148,7 +212,7 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
         )
     level = bath(found)["level"] or (wanted.volume or 0.0) / (found.length * found.width)
     if level > found.height - made.wall:
-        most = 1000 * FILLED * (found.length - 2 * made.wall) * (found.width - 2 * made.wall) * height_of_axes(made)
+        most = 1000 * FILLED * _floor(found) * height_of_axes(made)
         raise ScenarioError(
             f"--oil-volume of {1000 * (wanted.volume or 0.0):.3g} l stands {1000 * level:.0f} mm high in a housing of"
             f" {_sides(box)}. Give {most:.3g} l or less, which reaches the axes."
@@ -159,125 +223,6 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
 def _sides(box: Sequence[float]) -> str:
     """Sides of a box as the command line has them."""
     return f"{'x'.join(f'{1000 * side:.0f}' for side in box)} mm"
-
-
-def check(
-    kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str, wanted: Wanted = Wanted()
-) -> None:
-    """Refuse name plates that the rules have no unit for, all that is wrong at once.
-
-    Args:
-        kinds: of the stages
-        ratio: speed of the input over that of the output
-        power: at the input [W]
-        speed: of the input [rad/s]
-        bearings: "ball", "roller" or "auto"
-        wanted: what is known beside the name plate
-
-    Raises:
-        ScenarioError: unknown kinds, stages where they cannot stand, or more than so many stages of so much can do
-    """
-    problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
-    if not kinds:
-        problems.append("no stage is given. Name them from the input on, for example helical,helical.")
-    problems += _misplaced(kinds)
-    if wanted.centre and kinds and kinds[-1] in KINDS and kinds[-1] not in CENTRED:
-        problems.append(f"a {kinds[-1]} stage has no --centre-distance to choose. Leave it out.")
-    if not (power > 0 and speed > 0):
-        problems.append('power and speed must be above 0. Give for example --power "7.5 kW" --speed "1450 rpm".')
-    if bearings not in CHOICES:
-        problems.append(f'there are no bearings "{bearings}". Bearings: {", ".join(CHOICES)}.')
-    if not 0 < ratio < math.inf:
-        problems.append(f"a ratio of {ratio:g} is none. Give the input's speed over the output's.")
-    else:
-        problems += _too_much(kinds, ratio)
-        if bearings in CHOICES and power > 0 and speed > 0:
-            problems += _too_strong(kinds, ratio, power, speed, bearings)
-    if problems:
-        raise ScenarioError(problems)
-
-
-def _too_much(kinds: Sequence[str], ratio: float) -> Iterator[str]:
-    """A ratio that so many stages have not."""
-    least, most = (
-        math.prod(limit.get(kind, other) for kind in kinds) ** (1 / max(len(kinds), 1))
-        for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
-    )
-    if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
-        yield (
-            f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
-            f" to {most:.3g}. {_other_stages(kinds, ratio)}"
-        )
-
-
-def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> Iterator[str]:
-    """A torque that asks for a larger bore than any bearing has."""
-    choices = UNLOADED if IN_LINE in kinds else CHOICES
-    d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0)
-    if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
-        needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
-        ways = [f"{most / T * power / 1000:.4g} kW or less", f"{speed * T / most * 30 / math.pi:.4g} rpm or more"]
-        if most > power / speed:
-            ways.insert(1, f"a ratio of {most / T * ratio:.3g} or less")
-        if bearings == "ball" and needed <= largest_bore(choices["roller"]) / ROUNDED:
-            ways.append("--bearings roller")
-        yield (
-            f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
-            f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}."
-        )
-
-
-def _misplaced(kinds: Sequence[str]) -> Iterator[str]:
-    """Stages that cannot stand where they are."""
-    if "bevel" in kinds[1:]:
-        first = ",".join(sorted(kinds, key=lambda kind: kind != "bevel"))
-        yield f"a bevel stage comes first: here its pinion is on the input shaft. Give --stages {first}."
-    if LAST in kinds[:-1]:
-        yield f"a {LAST} stage comes last here, behind helical ones. Give --stages helical,{LAST}."
-    if LAST in kinds and "bevel" in kinds:
-        yield f"shafts turn by a right angle once. Give --stages helical,{LAST} or --stages bevel,helical."
-    if IN_LINE in kinds and set(kinds[kinds.index(IN_LINE) :]) != {IN_LINE}:
-        last = ",".join(sorted(kinds, key=lambda kind: kind == IN_LINE)) if LAST not in kinds else f"helical,{LAST}"
-        yield f"{IN_LINE} stages come last here, and none with a {LAST}. Give --stages {last}."
-
-
-def _other_stages(kinds: Sequence[str], ratio: float) -> str:
-    """Stages that have a ratio where others have not, with a worm or a bevel stage as wanted."""
-    if ratio < 1:
-        return "Give a ratio of 1 or more: the input is the faster shaft, and the output may drive."
-    kept = next((kind for kind in (kinds[-1], kinds[0]) if kind in (LAST, "bevel")), None)
-    if kept is None or ratio < LEAST.get(kept, 1.0):
-        kept, left = None, ratio
-    else:
-        left = ratio / MOST[kept]
-    kind = IN_LINE if kinds[-1] == IN_LINE and left >= LEAST[IN_LINE] else "helical"
-    gears = [kind] * max(math.ceil(math.log(max(left, 1.0)) / math.log(MOST[kind]) - 1e-9), kept is None)
-    named = {LAST: [*gears, LAST], "bevel": ["bevel", *gears]}.get(kept or "", gears)
-    return f"Give --stages {','.join(named)}."
-
-
-def last_ratio(kinds: Sequence[str], ratio: float) -> float:
-    """Ratio that is left for the last stage.
-
-    Args:
-        kinds: of all stages
-        ratio: of all together
-    """
-    for k in range(len(kinds) - 1):
-        ratio /= _share(ratio, kinds[k:])
-    return ratio
-
-
-def _share(ratio: float, kinds: Sequence[str]) -> float:
-    """Ratio of the next stage: the first ones have more, so that all wheels are of like size."""
-    stages = len(kinds)
-    if kinds[-1] == LAST and stages > 1:  # gears before a worm have less, as worms need 7 at least
-        least, most = LEAST[LAST], MOST[LAST]
-        share = min(max(ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
-        return float(min(max(share, 1.0), MOST[kinds[0]]))
-    share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
-    least, most = (ratio / math.prod(limit.get(k, 1.0) for k in kinds[1:]) for limit in (LEAST, MOST))
-    return float(min(max(share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))
 
 
 def dips(stage: Stage) -> bool:
@@ -293,12 +238,12 @@ def lowest(stage: Stage) -> float:
 def height_of_axes(made: Unit, k: int = 0) -> float:
     """Height of a shaft's axis above the bottom of the housing: all in one plane, but for that of a worm wheel [m]."""
     raised = made.stages[-1].a if isinstance(made.stages[-1], WormStage) and k == len(made.stages) else 0.0
-    return BELOW + max(max(s.r_1, lowest(s)) + s.m_n for s in made.stages) + raised
+    return made.below + max(max(s.r_1, lowest(s)) + s.m_n for s in made.stages) + raised
 
 
 def bath(made: Unit) -> dict[str, Any]:
     """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
-    given, floor = made.volume, (made.length - 2 * made.wall) * (made.width - 2 * made.wall)
+    given, floor = made.volume, _floor(made)
     if not any(map(dips, made.stages)):
         volume = given or SHARE * made.length * made.width * made.height
         rule = "data sheet" if given else f"assumed: {100 * SHARE:.0f} % of the housing's volume"

@@ -11,8 +11,8 @@ from ...model.parts.gears import HelicalGearPair, InternalGearPair
 
 #: Kinds of stages -> helix or spiral angle that is aimed at [rad], least and largest ratio of one stage.
 KINDS = {"spur": 0.0, "helical": math.radians(14.0), "bevel": math.radians(35.0), "worm": 0.0, "planetary": 0.0}
-LEAST = {"worm": 7.0, "planetary": 3.0}
-MOST = {"spur": 8.0, "helical": 8.0, "bevel": 4.0, "worm": 60.0, "planetary": 10.0}
+LEAST = {"worm": 5.0, "planetary": 3.0}
+MOST = {"spur": 8.0, "helical": 8.0, "bevel": 4.0, "worm": 100.0, "planetary": 10.0}
 #: Material factor of the friction of a wheel of centrifugally cast bronze CuSn12Ni2 [1].
 Y_W = 0.95
 #: Number of planets.
@@ -245,6 +245,11 @@ class PlanetaryStage(Stage):
     def r_2(self) -> float:
         """Radius of a planet."""
         return self.m_n * self.z_2 / 2
+
+    @property
+    def along(self) -> float:
+        """That of the planets' reach."""
+        return self.reach
 
     @property
     def reach(self) -> float:

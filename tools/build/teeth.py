@@ -9,7 +9,7 @@ from ...model.errors import ScenarioError
 from .stages import KINDS, PLANETS, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa].
-K_STAR = 2.5e6
+K_STAR = 4.0e6
 #: Face width over the pinion's diameter [1].
 WIDTH = 0.8
 #: Least number of teeth of a pinion.
@@ -25,7 +25,7 @@ BEVEL_TEETH = {1.5: 24, 2.5: 20, 3.5: 16, 4.0: 13}
 #: Torque of a worm wheel over the cube of the centre distance, as makers rate units of bronze and steel [Pa].
 T_WORM = 5.5e5
 #: Largest ratio -> starts of a worm.
-STARTS = {10.0: 4, 28.0: 2, 60.0: 1}
+STARTS = {6.5: 6, 10.0: 4, 28.0: 2, 100.0: 1}
 #: Mean diameter of a worm over the centre distance [1].
 SLIM = 0.4
 #: Numbers of teeth of suns to choose from.
@@ -36,8 +36,6 @@ LEAST_PLANET = 24
 MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0)
 R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
 CENTRES = tuple(m * 10**k for k in (1, 2, 3) for m in R_20)
-#: Centre distance at which the smallest bearings have room beside each other [mm].
-ROOMY = 33.0
 #: Usual helix angles [rad].
 HELIX = (math.radians(8.0), math.radians(20.0))
 #: How close to a ratio is close enough for a stage [1].
@@ -48,20 +46,20 @@ EVEN = 0.02
 SHORT = 0.93
 
 
-def _cylindrical(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> Stage:
+def _cylindrical(kind: str, u: float, T: float, n: float, a: float | None = None) -> Stage:
     """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
     d_1, aim = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3), KINDS[kind]
     least = FEWEST * MODULES[0] / 1000 / math.cos(aim) * (1 + u) / 2
     if a is not None and a < least:
         said = f"{1000 * a:g} mm holds no gears of {MODULES[0]:g} mm modules with a ratio of {u:.3g}"
         raise ScenarioError(f"--centre-distance of {said}. Give {1000 * least:.3g} mm or more.")
-    a = a or _standard(max(d_1 * (1 + u) / 2, least / SHORT, ROOMY / 1000 / SHORT))
+    a = a or _standard(max(d_1 * (1 + u) / 2, least / SHORT))
     d_1 = 2 * a / (1 + u)
     fitting = [m / 1000 for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH] or [MODULES[0] / 1000]
     m_n, z_1, z_2 = _numbers(u, [(m, total) for m in fitting[:-4:-1] for total in _sums(a, m, aim)])
     beta = math.acos((z_1 + z_2) * m_n / (2 * a)) if aim else 0.0
     b = round(1000 * WIDTH * m_n * z_1 / math.cos(beta)) / 1000
-    return Stage(kind, z_1, z_2, m_n, beta, b, T, n, x + b / 2)
+    return Stage(kind, z_1, z_2, m_n, beta, b, T, n, 0.0)
 
 
 def _sums(a: float, m_n: float, aim: float) -> list[int]:
@@ -90,7 +88,7 @@ def _first_close(
     return best[1:]
 
 
-def _bevel(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> BevelStage:
+def _bevel(kind: str, u: float, T: float, n: float, a: float | None = None) -> BevelStage:
     """Bevel gears by the load intensity of their virtual gears at mid face; outer diameter in steps of 5 mm."""
     slim = FACE / (1 - FACE / 2) / 2  # face width over mean diameter of the pinion and sqrt(u^2 + 1)
     d_m = (2 * T / (slim * u * K_BEVEL)) ** (1 / 3)
@@ -102,10 +100,10 @@ def _bevel(kind: str, u: float, T: float, n: float, x: float, a: float | None = 
     b = math.floor(1000 * FACE * d_e / 2 / sin_2) / 1000
     m_et, beta = round(1e6 * d_e / z_2) / 1e6, KINDS[kind]
     m_n = (m_et - b * sin_1 / z_1) * math.cos(beta)
-    return BevelStage(kind, z_1, z_2, m_n, beta, b, T, n, x + b / 2, m_et)
+    return BevelStage(kind, z_1, z_2, m_n, beta, b, T, n, 0.0, m_et)
 
 
-def _worm(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> WormStage:
+def _worm(kind: str, u: float, T: float, n: float, a: float | None = None) -> WormStage:
     """A worm and its wheel by the torque that makers rate a centre distance for."""
     z_1 = next(z for most, z in STARTS.items() if u <= most + 1e-9)
     z_2 = round(u * z_1)
@@ -113,12 +111,17 @@ def _worm(kind: str, u: float, T: float, n: float, x: float, a: float | None = N
     m_x = round(2e4 * (2 - SLIM) * a / z_2) / 2e4  # in steps of 0.05 mm
     d_1 = 2 * a - m_x * z_2
     b = round(750 * d_1) / 1000
-    return WormStage(kind, z_1, z_2, m_x, KINDS[kind], b, T, n, x + b / 2, d_1)
+    return WormStage(kind, z_1, z_2, m_x, KINDS[kind], b, T, n, 0.0, d_1)
 
 
 def _standard(a: float) -> float:
     """The standard centre distance for the one that is wanted [m]."""
     return min(c for c in CENTRES if c >= SHORT * 1000 * a) / 1000
+
+
+def larger(a: float) -> float:
+    """The next standard centre distance [m]."""
+    return _standard(1.01 * a / SHORT)
 
 
 def _fault(z_1: int, z_2: int, u: float) -> float:
@@ -131,7 +134,7 @@ def _off(z_1: int, z_2: int, u: float) -> float:
     return abs(z_2 / z_1 / u - 1)
 
 
-def _planetary(kind: str, u: float, T: float, n: float, x: float, a: float | None = None) -> PlanetaryStage:
+def _planetary(kind: str, u: float, T: float, n: float, a: float | None = None) -> PlanetaryStage:
     """A sun of the next standard module, by the load intensity of sun and planet; planets at equal angles."""
     part = max(u / 2 - 1, 0.5)
     d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
@@ -139,7 +142,7 @@ def _planetary(kind: str, u: float, T: float, n: float, x: float, a: float | Non
     z_1, z_3 = min(sizes, key=lambda size: (round(abs(1 + size[1] / size[0] - u) / u, 2), size[0]))
     m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
     b = max(round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)), 1) / 1000
-    return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, x + b / 2, z_3)
+    return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, 0.0, z_3)
 
 
 def _fits(z_1: int, z_3: int) -> bool:
@@ -148,7 +151,7 @@ def _fits(z_1: int, z_3: int) -> bool:
 
 
 #: Who makes a stage of a kind.
-MAKE: Mapping[str, Callable[[str, float, float, float, float, float | None], Stage]] = {
+MAKE: Mapping[str, Callable[[str, float, float, float, float | None], Stage]] = {
     "spur": _cylindrical,
     "helical": _cylindrical,
     "bevel": _bevel,

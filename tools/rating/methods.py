@@ -52,7 +52,7 @@ FACTORS: Mapping[str, Factors] = {
 def _bearing_loss(bearing: Turning, nu: float) -> float:
     """Friction power of all pieces [W] in an oil of a kinematic viscosity [m2/s]."""
     factors, v = FACTORS[type(bearing.part).__name__], bearing.part.values
-    F_r, F_a = bearing.F_r + v["F_r_0"], bearing.F_a + v["F_a_0"]
+    F_r, F_a = bearing.F_r + v["F_r_0"], bearing.F_a + v.get("F_a_0", 0.0)  # none where it holds no shaft
     viscous = needle_torque_viscous(bearing.w, nu, v["d_m"], v.get("f_0", factors.f_0))
     loaded = needle_torque_load(factors.P_1(v, F_r, F_a), v["d_m"], factors.f_1(v, F_r, F_a))
     axial = needle_torque_load(F_a, v["d_m"], factors.f_2)
