@@ -40,6 +40,7 @@ class Setting:
         spec: driven and lubricated as in the campaign
         formulas: all forms of all causes
         problem: data, and a reference where there is one
+        closer: the same with values less uncertain than rules leave them, where the file says that and no reference is
     """
 
     scenario: Scenario
@@ -47,6 +48,7 @@ class Setting:
     causes: tuple[Cause, ...]
     formulas: tuple[Formula, ...]
     problem: Problem
+    closer: Problem | None = None
 
     @cached_property
     def nominal(self) -> Nominal:
@@ -87,6 +89,7 @@ def setting(
     wide = reference is not None
     films = thin_film_friction(Context(roles, ranges, sensors))
     stated = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
+    usual = nuisances(roles, card.prior_sd, driven.uncertainties)
     known = (*stated, *([films] if films else ()))
     known = tuple(replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
@@ -97,9 +100,13 @@ def setting(
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
     plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
-    observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
-    problem = Problem(observed, card.day_cooling_sd)
-    return Setting(scenario, spec, causes, formulas, problem)
+
+    def problem(differing: Sequence[Nuisance]) -> Problem:
+        observed = [Observed(plant, c, (*differing, day), oils, point) for c in (data, reference) if c is not None]
+        return Problem(observed, card.day_cooling_sd)
+
+    closer = problem([n for n in usual if n.sd > 0]) if driven.rough and not wide else None
+    return Setting(scenario, spec, causes, formulas, problem(known), closer)
 
 
 def ranges_of(

@@ -46,11 +46,6 @@ class Effects:
         """Products of all pairs of effects (k, k)."""
         return np.asarray(self.white.T @ self.white)
 
-    @cached_property
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest sizes (k,), in half widths of the priors."""
-        return priors(self.candidates)[:2]
-
     def visible(self, cause: str) -> float:
         """Distance of a cause from none, at a half width of its prior."""
         k = self.places[cause][0]
@@ -63,7 +58,7 @@ class Effects:
             cause: in the middle of its general form
             size: in half widths of its prior
         """
-        k, (low, high) = self.places[cause][0], self._bounds
+        k, (low, high, _) = self.places[cause][0], priors(self.candidates)
         across, length = size * self._gram[k], np.diag(self._gram)
         best = np.clip(across / np.maximum(length, 1e-300), low, high)
         left = size**2 * self._gram[k, k] - 2 * best * across + best**2 * length

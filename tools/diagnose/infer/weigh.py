@@ -38,8 +38,6 @@ ALONE = (4, 10)
 SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
-#: Nats behind the likeliest set within which others are fitted with its gross readings: a few cost about as many.
-NEAR = 25.0
 #: p of any cause above which nothing more is fitted, where none leads: it does not know what scatters.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
@@ -68,6 +66,7 @@ class Options:
         seed: of the draws
         most: causes that may act together
         wanted: causes that are fitted however they look
+        known: hypotheses about the same readings on other priors, which are fitted as well
         critical: log prior odds of nothing against one cause, where they and gross readings are known; else draws of
             the null tell them
     """
@@ -76,15 +75,15 @@ class Options:
     seed: int = 0
     most: int = 8
     wanted: Collection[str] = ()
+    known: Sequence[Hypothesis] = ()
     critical: float | None = None
 
 
-def _silent(stage: str, share: float) -> None:
-    """No progress."""
-
-
 def weigh(
-    problem: Problem, formulas: Sequence[Formula], options: Options = Options(), progress: Progress = _silent
+    problem: Problem,
+    formulas: Sequence[Formula],
+    options: Options = Options(),
+    progress: Progress = lambda stage, share: None,
 ) -> Found:
     """All hypotheses that count, weighed; progress is told of each stage and the share done."""
     return Weighing(problem, formulas, options, progress).run()
@@ -94,7 +93,11 @@ class Weighing:
     """One run; arguments as for `weigh`."""
 
     def __init__(
-        self, problem: Problem, formulas: Sequence[Formula], options: Options, progress: Progress = _silent
+        self,
+        problem: Problem,
+        formulas: Sequence[Formula],
+        options: Options,
+        progress: Progress = lambda stage, share: None,
     ) -> None:
         self.whole, self.options, self.progress = problem, options, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
@@ -135,6 +138,10 @@ class Weighing:
 
     def run(self) -> Found:
         """Everything."""
+        for h in self.options.known:
+            with suppress(SolveError):
+                start = h.fit.look.acting, self.null.look.z, h.fit.noise.scales
+                self._fit_exactly(self._beside(self.problem.aside, h.extras), *start, h.extras, h.forms)
         for k in range(LOOKS):
             if k and self.p_any > QUIET and not self.leader().causes:
                 break
@@ -148,7 +155,6 @@ class Weighing:
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
                 self._exchange()
-            self._fit_alike()
             if k > 1 and self.leader().fit is best:
                 break
         return self._weighed()
@@ -261,16 +267,6 @@ class Weighing:
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
             for start, logs in self._promising(look.beside(near.linear(problem)), taken, EXCHANGED):
                 self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
-
-    def _fit_alike(self) -> None:
-        """Fits what is near the leading set with its gross readings, so that both are weighed by the same readings."""
-        ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
-        aside, best = ranked[0][0][2], ranked[0][1].log_joint
-        for key, h in ranked:
-            if h.log_joint > best - NEAR and (*key[:2], aside) not in self.hypotheses:
-                look, problem = h.fit.look, self._beside(aside, h.extras)
-                with suppress(SolveError):
-                    self._fit_exactly(problem, look.acting, look.z, h.fit.noise.scales, h.extras, h.forms)
 
     def _beside(self, aside: frozenset[Aside], extras: Sequence[Extra]) -> Problem:
         """The problem with some gross readings and scatters."""

@@ -30,11 +30,6 @@ THIN_FILMS = 0.057
 EXPONENTS = {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
 
 
-def as_they_are(theta: Theta, row: Row) -> Theta:
-    """Shapes that are named as the parameters."""
-    return theta
-
-
 class Extras:
     """Makes the extra parts of one cause, and forms that use them.
 
@@ -98,7 +93,7 @@ class Extras:
         places: Sequence[Place],
         shapes: Iterable[Shape],
         limits: Sequence[Regime] = (),
-        as_keys: Keys = as_they_are,
+        as_keys: Keys | None = None,
         heats: str = "",
     ) -> tuple[Form, ...]:
         """Losses: one form for all places, one for each of several, one for each regime.
@@ -127,7 +122,7 @@ class Extras:
         names: Sequence[str],
         shapes: tuple[Shape, ...],
         limits: Sequence[Regime] = (),
-        as_keys: Keys = as_they_are,
+        as_keys: Keys | None = None,
     ) -> tuple[Form, ...]:
         """One form for all parts, one by name for each of several, one for each regime; arguments as of `losses`."""
         alone = [self.with_parts([part], shapes, None, as_keys) for part in made]
@@ -136,13 +131,13 @@ class Extras:
         return weighed([self.with_parts(made, shapes, None, as_keys)], single, sides)
 
     def with_parts(
-        self, made: Sequence[Made], shapes: Iterable[Shape], limit: Regime | None = None, as_keys: Keys = as_they_are
+        self, made: Sequence[Made], shapes: Iterable[Shape], limit: Regime | None = None, as_keys: Keys | None = None
     ) -> Form:
         """One form in which some parts share the size, in a regime if there is one; arguments as of `losses`."""
         names = [part.name for part, _ in made]
 
         def values(theta: Theta, row: Row) -> Values:
-            given = as_keys(theta, row)
+            given = as_keys(theta, row) if as_keys else theta
             keys = {key: given[key] for key in KEYS if key in given}
             share = (1.0 if limit is None else limit.share(theta, row, self.ranges)) / len(names)
             keys |= {size: given[size] * share for size in ("P_ref", "G_ref") if size in given}

@@ -10,7 +10,7 @@ import casadi as ca
 from ....model.machines.roles import Place
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import TABLE, entry, scaled
-from .extras import Extras, Keys, as_they_are
+from .extras import Extras, Keys
 from .forms import Context, Regime, beside_own_law, weighed
 
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
@@ -42,7 +42,7 @@ def causes(at: Context) -> Iterator[Cause]:
     yield from torque_only(at)
 
 
-def extra_loss(at: Context, name: str, places: Sequence[Place], as_keys: Keys = as_they_are, heats: str = "") -> Cause:
+def extra_loss(at: Context, name: str, places: Sequence[Place], as_keys: Keys | None = None, heats: str = "") -> Cause:
     """A cause of the table that is an extra loss at some places; `as_keys` and `heats` as for `Extras.losses`."""
     known = entry(name, at)
     shapes = [s for s in known.shapes if s.name != "wet" or at.roles.wetted]

@@ -129,17 +129,13 @@ def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
         columns = []
         for name in sensors:
             index = next((i for i, s in enumerate(o.read) if s.name == name), -1)
-            sd = _remainder_sd(campaigns, name)
+            kind, values = next((s.kind, o.campaign.values[name]) for o in campaigns for s in o.read if s.name == name)
+            size = REMAINDER["other"] * np.nanmean(np.abs(values))
+            sd = REMAINDER["temperature"] if kind.endswith("_temp") else size
             mine = (o.entries.sensor == index)[:, None]
             columns += [np.where(mine, sd * own[o.row], 0.0), np.where(mine, sd * fades, 0.0)]
         blocks.append(np.concatenate(columns, axis=1))
     return np.concatenate(blocks)
-
-
-def _remainder_sd(campaigns: Sequence[Measured], name: str) -> float:
-    kinds = [(s.kind, np.nanmean(np.abs(o.campaign.values[name]))) for o in campaigns for s in o.read if s.name == name]
-    kind, size = kinds[0]
-    return REMAINDER["temperature"] if kind.endswith("_temp") else float(REMAINDER["other"] * size)
 
 
 def alike(o: Measured) -> np.ndarray:
