@@ -89,7 +89,6 @@ def setting(
     wide = reference is not None
     films = thin_film_friction(Context(roles, ranges, sensors))
     stated = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
-    usual = nuisances(roles, card.prior_sd, driven.uncertainties)
     known = (*stated, *([films] if films else ()))
     known = tuple(replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
@@ -100,13 +99,10 @@ def setting(
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
     plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
-
-    def problem(differing: Sequence[Nuisance]) -> Problem:
-        observed = [Observed(plant, c, (*differing, day), oils, point) for c in (data, reference) if c is not None]
-        return Problem(observed, card.day_cooling_sd)
-
-    closer = problem([n for n in usual if n.sd > 0]) if driven.rough and not wide else None
-    return Setting(scenario, spec, causes, formulas, problem(known), closer)
+    observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
+    problem, near = Problem(observed, card.day_cooling_sd), nuisances(roles, card.prior_sd, driven.uncertainties)
+    closer = Problem([Observed(plant, data, (*(n for n in near if n.sd > 0), day), oils, point)], problem.day_sd)
+    return Setting(scenario, spec, causes, formulas, problem, closer if driven.rough and not wide else None)
 
 
 def ranges_of(

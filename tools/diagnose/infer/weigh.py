@@ -80,10 +80,7 @@ class Options:
 
 
 def weigh(
-    problem: Problem,
-    formulas: Sequence[Formula],
-    options: Options = Options(),
-    progress: Progress = lambda stage, share: None,
+    problem: Problem, formulas: Sequence[Formula], options: Options = Options(), progress: Progress | None = None
 ) -> Found:
     """All hypotheses that count, weighed; progress is told of each stage and the share done."""
     return Weighing(problem, formulas, options, progress).run()
@@ -93,21 +90,17 @@ class Weighing:
     """One run; arguments as for `weigh`."""
 
     def __init__(
-        self,
-        problem: Problem,
-        formulas: Sequence[Formula],
-        options: Options,
-        progress: Progress = lambda stage, share: None,
+        self, problem: Problem, formulas: Sequence[Formula], options: Options, progress: Progress | None = None
     ) -> None:
-        self.whole, self.options, self.progress = problem, options, progress
+        self.whole, self.options, self.progress = problem, options, progress or (lambda stage, share: None)
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
         self.hypotheses: dict[Key, Hypothesis] = {}
         self.exchanged = set[Key]()
-        progress("calibrating without a cause", 0.02)
+        self.progress("calibrating without a cause", 0.02)
         null = fitted(problem, (), np.zeros(problem.nz))
-        progress("effects of all causes", 0.1)
+        self.progress("effects of all causes", 0.1)
         first = self.screened(null, problem)
         self.critical = FIRST
         self.problem, self.null, self.first = problem, null, first
