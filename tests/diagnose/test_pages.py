@@ -85,7 +85,7 @@ SCHEMES = {
 #: The page's section about the measured campaign of the planetary rig.
 SECTION = (PAGES / "trust" / "diagnosis.md").read_text("utf-8").partition("## The measured campaign\n")[2]
 #: What its leading sets have in common, as the page names them.
-IN_ALL = ("losses.windage", "sensor.oil_temp.mounting", "sensor.torque.random_walk")
+IN_ALL = ("losses.churning", "sensor.oil_temp.mounting", "sensor.torque.random_walk")
 diagnosed_again = pytest.mark.skipif(os.environ.get("GEARHEAT_HIDDEN") != "all", reason="GEARHEAT_HIDDEN=all only")
 
 
@@ -152,6 +152,6 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
         alone = {c["id"]: c["probability"] for c in views[channel]["causes"]}
         for cause, probability in causes.items():
             assert alone[cause] == pytest.approx(probability, abs=0.02)
-    assert campaign["answers"][0]["probability"] == pytest.approx(0.90, abs=0.02)
-    assert campaign["test"]["p_adequacy"] == pytest.approx(0.82, abs=0.02)
+    assert campaign["answers"][0]["probability"] == pytest.approx(0.73, abs=0.02)
+    assert campaign["test"]["p_adequacy"] == pytest.approx(0.84, abs=0.02)
     assert all([cause] in answer["causes"] for answer in campaign["answers"] for cause in IN_ALL)
