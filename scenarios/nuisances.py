@@ -155,16 +155,21 @@ def nuisances(
 
 
 def usual_priors(scenario: Scenario) -> dict[str, float]:
-    """Relative standard deviation by part type and parameter, and of single parts that differ; stated ones count."""
+    """Relative standard deviation by part type and parameter, and of single parts that differ; stated ones count.
+
+    What the rig file says of values together stays with it.
+    """
     kinds = {part.name: part.type for part in scenario.spec.parts}
     own: dict[str, float] = {}
-    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties_before_data):
+    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):
         for path, exponent in nuisance.paths.items():
             if exponent > 0:
                 own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
     found: dict[str, float] = {}
+    together = {f"{kinds[path.partition('.')[0]]}.{path.partition('.')[2]}" for path in scenario.rough}
     for path, sd in own.items():
         part, _, key = path.rpartition(".")
-        if found.setdefault(f"{kinds[part]}.{key}", sd) != sd:
+        name = f"{kinds[part]}.{key}"
+        if path not in scenario.rough and (name in together or found.setdefault(name, sd) != sd):
             found[path] = sd
     return found

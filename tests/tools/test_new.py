@@ -10,10 +10,12 @@ import gearheat as gh
 import pytest
 from for_each import thin
 from gearheat.model.errors import ScenarioError
+from gearheat.model.machines.roles import Roles
 from gearheat.model.parts import TwoGearSupport
 from gearheat.model.units import si_of
 from gearheat.scenarios.entries import catalogue
 from gearheat.scenarios.load import load
+from gearheat.scenarios.nuisances import usual_priors
 from gearheat.tools.build import rig_file, sizing
 from gearheat.tools.build.bearings import LIFE, TAPERED, choose
 from gearheat.tools.build.new import new
@@ -74,6 +76,16 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
     assert found["assumed"] > 50
     assert scenario.drives == "input" and scenario.operating_point["output.load"] > 0
     assert flat_of(scenario).states
+
+
+@pytest.mark.parametrize("name", PLATES)
+def test_it_says_how_uncertain_its_rules_are_and_a_card_leaves_it_there(made, name):
+    scenario = load(made(name)[0])
+    roles = Roles.of(scenario.spec)
+    lossy = roles.scaled(*(part for role in ("teeth", "bearing", "seal", "churning") for part in roles.having(role)))
+    assert scenario.rough.issuperset(lossy) and scenario.rough.issuperset(roles.scaled(*roles.oil_side))
+    kinds = {f"{scenario.spec.part(part).type}.{key}" for part, _, key in (p.rpartition(".") for p in scenario.rough)}
+    assert kinds.isdisjoint(usual_priors(scenario)) and scenario.rough.isdisjoint(usual_priors(scenario))
 
 
 def test_what_it_made_is_told(gearheat, tmp_path):
