@@ -14,6 +14,8 @@ from ..model.files import reading
 
 #: Kinds of source beside a citation ("Dias2014, table 5.7"): they need a reason behind the colon.
 SOURCE_KINDS = ("assumed", "inferred", "calibrated")
+#: Those of values that data gave.
+FROM_DATA = SOURCE_KINDS[1:]
 
 #: Keys of a table of values that are not values.
 ABOUT = ("doc", "source", "sources")

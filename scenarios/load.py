@@ -41,7 +41,7 @@ from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from .assemblies import expand_assemblies
 from .csv_table import scale, split_unit
-from .document import ABOUT, paths, read_toml, sources_of
+from .document import ABOUT, FROM_DATA, paths, read_toml, sources_of
 from .film_map import find_map, names_map
 from .housing import oil_problems
 from .own_types import load_installed_types, load_type
@@ -369,8 +369,8 @@ class _Loader:
         """What a value changes by at one standard deviation; what data gave may be as uncertain as they leave it."""
         name = f"{where}{quantity.name}"
         part, _, key = quantity.name.rpartition(".")
-        of_data = self.value_sources.get(quantity.name, "").startswith(("inferred", "calibrated"))
-        value = None if of_data or part not in self.parts else self.parts[part].values.get(key)
+        from_data = self.value_sources.get(quantity.name, "").startswith(FROM_DATA)
+        value = None if from_data or part not in self.parts else self.parts[part].values.get(key)
         return not_too_wide(name, raw, deviation(name, raw, quantity.unit), value)
 
     def _protocol(self) -> Protocol | None:

@@ -166,10 +166,10 @@ def usual_priors(scenario: Scenario) -> dict[str, float]:
             if exponent > 0:
                 own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
     found: dict[str, float] = {}
-    together = {f"{kinds[path.partition('.')[0]]}.{path.partition('.')[2]}" for path in scenario.rough}
+    rough = scenario.rough
+    names = {path: f"{kinds[part]}.{key}" for path in (*own, *rough) for part, _, key in [path.partition(".")]}
+    together = {names[path] for path in rough}
     for path, sd in own.items():
-        part, _, key = path.rpartition(".")
-        name = f"{kinds[part]}.{key}"
-        if path not in scenario.rough and (name in together or found.setdefault(name, sd) != sd):
+        if path not in rough and (names[path] in together or found.setdefault(names[path], sd) != sd):
             found[path] = sd
     return found

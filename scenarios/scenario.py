@@ -13,6 +13,7 @@ from ..model.core.declare import Given, Input, list_declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
+from .document import FROM_DATA
 from .entries import Entry, catalogue, unchecked_entry
 from .references import followed
 from .shipped import FILES
@@ -134,8 +135,8 @@ class Scenario:
     @property
     def rough(self) -> frozenset[str]:
         """Paths of values that are uncertain together, as rules give them; what data gave so is known better."""
-        data = [p for p, source in self.value_sources.items() if source.startswith(("inferred", "calibrated"))]
-        return frozenset(path for changes in self.joint_uncertainties.values() for path in changes) - {*data}
+        paths = frozenset(path for changes in self.joint_uncertainties.values() for path in changes)
+        return frozenset(path for path in paths if not self.value_sources.get(path, "").startswith(FROM_DATA))
 
     @property
     def uncertainties_before_data(self) -> dict[str, float]:

@@ -23,7 +23,7 @@ from .machines import KINDS as OF_MACHINES
 from .names import names
 from .printing import show
 from .scoring import Outcome, report
-from .sheets import MAKERS, POOLED
+from .sheets import MAKERS, POOLED, SHEETS
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -58,7 +58,7 @@ def challenge(
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []
     for name in POOLED if sheet == "all" else (sheet,):
-        kinds = OF_MACHINES if name in ("machines", "plates", "logs", "lone_logs") else KINDS
+        kinds = OF_MACHINES if name in MAKERS.keys() - SHEETS.keys() else KINDS
         if only and only not in kinds:
             problems.append(f'challenge: {name} has no "{only}".{suggestion(only, kinds)} Kinds: {", ".join(kinds)}.')
     if off and off not in RULES:

@@ -100,9 +100,11 @@ def setting(
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
     plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
-    problem, near = Problem(observed, card.day_cooling_sd), nuisances(roles, card.prior_sd, driven.uncertainties)
-    closer = Problem([Observed(plant, data, (*(n for n in near if n.sd > 0), day), oils, point)], problem.day_sd)
-    return Setting(scenario, spec, causes, formulas, problem, closer if driven.rough and not wide else None)
+    made = Setting(scenario, spec, causes, formulas, Problem(observed, card.day_cooling_sd))
+    if wide or not driven.rough:
+        return made
+    near = [n for n in nuisances(roles, card.prior_sd, driven.uncertainties) if n.sd > 0]
+    return replace(made, closer=Problem([Observed(plant, data, (*near, day), oils, point)], card.day_cooling_sd))
 
 
 def ranges_of(

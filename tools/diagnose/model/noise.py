@@ -25,8 +25,7 @@ OIL_BESIDE_REFERENCE = 0.25
 #: Share of a nuisance's prior by which it follows speed, load and room otherwise than its law, over a spread of each.
 #: Of 15 sound machines whose losses so do, 8 raised an alarm without it, 1 with it, none with .25, which finds fewer.
 LAW = 0.15
-#: The same of what rules give. Bearings after Palmgren have .5 of it against SKF, seals of
-#: ISO/TR 14179-2 .25.
+#: The same of what rules give: against SKF's, bearings after Palmgren have .5; seals of ISO/TR 14179-2 .25.
 ROUGH_LAW = 0.5
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
 PLACEMENT_ERROR = 0.08
@@ -130,8 +129,7 @@ def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
         for name in sensors:
             index = next((i for i, s in enumerate(o.read) if s.name == name), -1)
             kind, values = next((s.kind, o.campaign.values[name]) for o in campaigns for s in o.read if s.name == name)
-            size = REMAINDER["other"] * np.nanmean(np.abs(values))
-            sd = REMAINDER["temperature"] if kind.endswith("_temp") else size
+            sd = REMAINDER["temperature"] if kind.endswith("_temp") else REMAINDER["other"] * np.nanmean(np.abs(values))
             mine = (o.entries.sensor == index)[:, None]
             columns += [np.where(mine, sd * own[o.row], 0.0), np.where(mine, sd * fades, 0.0)]
         blocks.append(np.concatenate(columns, axis=1))
