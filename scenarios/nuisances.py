@@ -56,7 +56,7 @@ class Group:
         name: in words
         key: of the card
         wide: standard deviation where a healthy campaign tells them
-        paths: roles of a machine -> parameter with its exponent
+        paths: roles of a machine -> parameters
         share: of the key's standard deviation
         refilled: whether another filling or mounting changes them
         by_oil: whether they are others with each oil
@@ -65,14 +65,10 @@ class Group:
     name: str
     key: str
     wide: float
-    paths: Callable[[Roles], Mapping[str, float]]
+    paths: Callable[[Roles], Sequence[str]]
     share: float = 1.0
     refilled: bool = False
     by_oil: bool = False
-
-
-def _alike(paths: Sequence[str]) -> dict[str, float]:
-    return dict.fromkeys(paths, 1.0)
 
 
 def _to(roles: Roles, bodies: Sequence[str]) -> list[str]:
@@ -80,40 +76,40 @@ def _to(roles: Roles, bodies: Sequence[str]) -> list[str]:
     return [c for c in roles.oil_side if any(roles.at(p, "body") in bodies for p in roles.bodies_of(c))]
 
 
-def _oil_inside(roles: Roles) -> Mapping[str, float]:
+def _oil_inside(roles: Roles) -> Sequence[str]:
     hot = {roles.at(place.inner, "body") for place in roles.places["teeth"]}
-    return _alike(roles.scaled(*_to(roles, [b for b in hot if b])))
+    return roles.scaled(*_to(roles, [b for b in hot if b]))
 
 
-def _oil_outside(roles: Roles) -> Mapping[str, float]:
-    return {p: 1.0 for p in roles.scaled(*roles.oil_side) if p not in _oil_inside(roles)}
+def _oil_outside(roles: Roles) -> Sequence[str]:
+    return [p for p in roles.scaled(*roles.oil_side) if p not in _oil_inside(roles)]
 
 
-def _convection(roles: Roles) -> Mapping[str, float]:
-    """More area that radiates no more for it; a housing that tells its area has a factor of its own."""
-    paths: dict[str, float] = {}
-    for name in roles.surfaces:
-        paths |= _alike(roles.scaled(name))
-        if f"{name}.A" in paths:
-            paths[f"{name}.emissivity"] = -1.0
-    return paths
+def _of_surfaces(roles: Roles, key: str) -> Sequence[str]:
+    return [f"{name}.{key}" for name in roles.surfaces]
 
 
-#: All groups. Of the foundation a card says nothing, so it has half of what convection has.
+def _outer_area(roles: Roles) -> Sequence[str]:
+    return [p for p in roles.scaled(*roles.surfaces) if p not in _of_surfaces(roles, "k_conv")]
+
+
+#: All groups. Of the foundation a card says nothing, so it has half of what convection has; areas are known unless card
+#: or rig file say that they are not.
 GROUPS: tuple[Group, ...] = (
-    Group("mesh friction", "mu", 0.4, lambda r: _alike(r.scaled(*r.parts("teeth"))), by_oil=True),
-    Group("bearing loss", "brg", 0.4, lambda r: _alike(r.scaled(*r.parts("bearing"))), by_oil=True),
-    Group("seal loss", "seal", 0.5, lambda r: _alike(r.scaled(*r.parts("seal"))), by_oil=True),
-    Group("churning", "seal", 0.5, lambda r: _alike(r.scaled(*r.having("churning"))), refilled=True, by_oil=True),
-    Group("radiation", "rad", 0.6, lambda r: {f"{name}.emissivity": 1.0 for name in r.surfaces}),
+    Group("mesh friction", "mu", 0.4, lambda r: r.scaled(*r.parts("teeth")), by_oil=True),
+    Group("bearing loss", "brg", 0.4, lambda r: r.scaled(*r.parts("bearing")), by_oil=True),
+    Group("seal loss", "seal", 0.5, lambda r: r.scaled(*r.parts("seal")), by_oil=True),
+    Group("churning", "seal", 0.5, lambda r: r.scaled(*r.having("churning")), refilled=True, by_oil=True),
+    Group("radiation", "rad", 0.6, lambda r: _of_surfaces(r, "emissivity")),
     Group("oil to what turns", "gow", 0.6, _oil_inside, refilled=True),
     Group("oil to other bodies", "gow", 0.6, _oil_outside, refilled=True),
-    Group("between bodies", "gwh", 0.6, lambda r: _alike(r.scaled(*r.contacts, *r.walls))),
-    Group("capacities", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside, *r.outside, *r.having("bath")))),
-    Group("capacities inside", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside))),
-    Group("coolers", "hconv", 0.7, lambda r: _alike(r.scaled(*r.coolers))),
-    Group("foundation", "hconv", 0.7, lambda r: _alike(r.scaled(*r.foundation)), share=0.5),
-    Group("convection", "hconv", 0.6, _convection),
+    Group("between bodies", "gwh", 0.6, lambda r: r.scaled(*r.contacts, *r.walls)),
+    Group("capacities", "cap", 0.5, lambda r: r.scaled(*r.inside, *r.outside, *r.having("bath"))),
+    Group("capacities inside", "cap", 0.5, lambda r: r.scaled(*r.inside)),
+    Group("coolers", "hconv", 0.7, lambda r: r.scaled(*r.coolers)),
+    Group("foundation", "hconv", 0.7, lambda r: r.scaled(*r.foundation), share=0.5),
+    Group("outer area", "hconv", 0.0, _outer_area, share=0.0),
+    Group("convection", "hconv", 0.6, lambda r: _of_surfaces(r, "k_conv")),
 )
 
 
@@ -143,13 +139,11 @@ def nuisances(
 
     found: list[Nuisance] = []
     for group in GROUPS:
-        signs = {path: sign for path, sign in group.paths(roles).items() if roles.value(path)}  # zero stays zero
-        # an emissivity that makes up for an area follows it
-        sds = {path: sd_of(group, path if sign > 0 else f"{path.partition('.')[0]}.A") for path, sign in signs.items()}
-        if signs:
+        sds = {path: sd_of(group, path) for path in group.paths(roles) if roles.value(path)}  # zero stays zero
+        if sds:
             most = max(sds.values())
-            exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
-            by_rule = not signs.keys().isdisjoint(rough)
+            exponents = {path: sd / most if most else 1.0 for path, sd in sds.items()}
+            by_rule = not sds.keys().isdisjoint(rough)
             found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, by_rule))
     return tuple(found)
 
@@ -162,9 +156,8 @@ def usual_priors(scenario: Scenario) -> dict[str, float]:
     kinds = {part.name: part.type for part in scenario.spec.parts}
     own: dict[str, float] = {}
     for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):
-        for path, exponent in nuisance.paths.items():
-            if exponent > 0:
-                own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
+        for path, exponent in nuisance.paths.items() if nuisance.sd else ():
+            own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
     found: dict[str, float] = {}
     rough = scenario.rough
     names = {path: f"{kinds[part]}.{key}" for path in (*own, *rough) for part, _, key in [path.partition(".")]}

@@ -164,7 +164,7 @@ class DrumCooling(CylinderCooling):
         """One coefficient over one area."""
         T, T_air, end = self.surface.T, self.air.T, self.A * self.share_ends / 2
         S = cooling_area(end, end, self.A - 2 * end, self.A_belt, self.psi_1, self.psi_2)
-        h = source_coefficient(self.P_N, self.D, self.shaft.w * self.D / 2)
+        h = self.k_conv * source_coefficient(self.P_N, self.D, self.shaft.w * self.D / 2)
         yield equation("heat transfer coefficient", self.h, h)
         yield equation("convection", self.Q_flow_convection, self.h * S * (T - T_air))
         yield equation("radiation", self.Q_flow_radiation, 0.0)

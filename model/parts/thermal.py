@@ -265,6 +265,7 @@ class SurfaceCooling(Component):
 
     A = Parameter("m2", "effective outer area", above=0.0)
     emissivity = Parameter("1", "emissivity of the surface", at_least=0.0, at_most=1.0)
+    k_conv = Parameter("1", "factor on the convection, 1 for the law as it is", default=1.0, at_least=0.0)
     h = Output("W/(m2.K)", "convective heat transfer coefficient", nominal=10.0)
     Q_flow_convection = Output("W", "heat flow rate by convection", nominal=100.0)
     Q_flow_radiation = Output("W", "heat flow rate by radiation", nominal=100.0)
@@ -284,7 +285,8 @@ class SurfaceCooling(Component):
     def equations(self) -> Iterator[Equation]:
         """Convection and radiation side by side."""
         T, T_air = self.surface.T, self.air.T
-        yield equation("heat transfer coefficient", self.h, mixed(self.natural(), self.forced((T + T_air) / 2)))
+        h = self.k_conv * mixed(self.natural(), self.forced((T + T_air) / 2))
+        yield equation("heat transfer coefficient", self.h, h)
         yield equation("convection", self.Q_flow_convection, self.h * self.convecting_area() * (T - T_air))
         yield equation("radiation", self.Q_flow_radiation, radiated(T, self.air.T_radiant, self.A, self.emissivity))
         yield equation("leaves the surface", self.surface.Q_flow, self.Q_flow_convection + self.Q_flow_radiation)

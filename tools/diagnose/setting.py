@@ -90,7 +90,7 @@ def setting(
     films = thin_film_friction(Context(roles, ranges, sensors))
     stated = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
     known = (*stated, *([films] if films else ()))
-    known = tuple(replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known if wide or n.sd > 0)
+    known = tuple(n for n in (replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known) if n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)

@@ -24,8 +24,6 @@ LITTLE = 0.2
 TRUSTED = 0.7
 #: Rounds of point and scatter in turn at most.
 ROUNDS = 4
-#: Change of a scale's logarithm below which the last is done.
-SETTLED = 0.1
 #: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
 STALLED = 0.5
 #: Longest step of a nuisance.
@@ -155,14 +153,18 @@ def fitted(
     Raises:
         SolveError: the model cannot be run where the fit begins
     """
-    look = _begun(problem, acting, z)
-    noise = _Line(problem, look).scattered(problem.noise(look, scales))
-    for _ in range(ROUNDS):
-        look = _settled(problem, look, noise, steps)
-        before, line = noise, _Line(problem, look)
-        noise = line.scattered(before)
-        if np.abs(noise.scales - before.scales).max(initial=0.0) < SETTLED:
+    look = _begun(problem, acting, np.clip(z, *problem.data.limits[:, : problem.nz]))
+    line = _Line(problem, look)
+    noise = line.scattered(problem.noise(look, scales))
+    for k in range(ROUNDS):
+        before, look = look, _settled(problem, look, noise, steps)
+        if look is before:
             break
+        if k:  # what scatters follows the point: whole ways go to and fro
+            with suppress(SolveError):
+                look = problem.look(*line.vector.split((before.x + look.x) / 2))
+        line = _Line(problem, look)
+        noise = line.scattered(noise)
     return line.weighed(noise)
 
 

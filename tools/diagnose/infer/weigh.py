@@ -15,7 +15,6 @@ from scipy.special import chdtrc
 
 from ....model.errors import SolveError
 from ..model.formula import Formula
-from ..model.observe import FARTHEST
 from . import sets
 from .evidence import White
 from .fit import Fit, fitted
@@ -304,7 +303,7 @@ class Weighing:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
         a = White.of(self.linear.covariance(s.scatter.scales, s.wide)).back(self.linear.residual)
-        z = np.clip(near.look.jacobian[:, : self.whole.nz].T @ a, -FARTHEST, FARTHEST)
+        z = near.look.jacobian[:, : self.whole.nz].T @ a
         t = np.array(s.widths) * (self.linear.sized(s.sized).T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
