@@ -33,7 +33,8 @@ def test_groups_of_the_planetary_gearbox(case):
         "capacities": {"gears.C", "carrier_body.C", "wall.C", "surface.C", "oil.V"},
         "capacities inside": {"gears.C", "carrier_body.C"},
         "foundation": {"foot.G"},
-        "convection": {"cooling.A", "cooling.emissivity"},
+        "outer area": {"cooling.A"},
+        "convection": {"cooling.k_conv"},
     }
 
 
@@ -58,10 +59,11 @@ def test_a_card_may_hold_parameters_fast(case):
     assert mixed.sd == 0.2 and mixed.paths == {"stage_1.k_mu": 1.0, "mesh.mu_fluid": 0.0, "mesh.mu_boundary": 0.0}
 
 
-def test_an_emissivity_makes_up_for_the_area_however_uncertain(case):
-    convection = named(case, "helical_two_stage", {"FinnedBoxCooling.A": 0.3})["convection"]
-    assert convection.sd == 0.3
-    assert convection.paths["cooling.A"] == -convection.paths["cooling.emissivity"] == 1.0
+def test_an_area_is_known_unless_it_is_said_not_to_be(case):
+    assert named(case, "helical_two_stage", {"hconv": 0.3})["outer area"].sd == 0.0
+    stated = named(case, "helical_two_stage", {"FinnedBoxCooling.A": 0.3})
+    assert (stated["convection"].sd, stated["outer area"].sd) == (0.08, 0.3)
+    assert stated["outer area"].paths == {"cooling.A": 1.0, "cooling.A_fins": 0.0}
 
 
 def test_the_rig_file_says_how_uncertain_unless_the_card_does(case):
@@ -104,7 +106,7 @@ def test_every_path_is_a_parameter_of_the_rig(case, rig):
     c = case(rig)
     known = {q.name for q in c.scenario.spec.flat().parameters}
     for n in nuisances(c.roles, {}, {}):
-        assert set(n.paths) <= known and n.sd > 0 and n.wide > 0
+        assert set(n.paths) <= known and (n.sd > 0) == (n.wide > 0) == (n.name != "outer area")
 
 
 def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):

@@ -12,7 +12,7 @@ from ....model.parts.free_form import step
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, beside_own_law, linear, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, linear, no_less, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -48,9 +48,10 @@ def causes(at: Context) -> Iterator[Cause]:
 
 def _conducting(at: Context, name: str, ports: Sequence[str], parts: Sequence[str]) -> Cause:
     """A cause of the table: an extra conductance from some ports to the room, or parts that conduct otherwise."""
-    known = entry(name, at)
-    cause = known.with_forms(Extras(known.part, at).conductors(ports, known.shapes, known.regimes))
-    return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / at.ranges.rise)
+    known, rise = entry(name, at), at.ranges.rise
+    forms = Extras(known.part, at).conductors(ports, known.shapes, known.regimes)
+    cause = known.with_forms(no_less(forms, sum(at.ranges.powers.get(part, 0.0) for part in parts) / rise))
+    return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / rise)
 
 
 def emissivity(at: Context) -> Iterator[Cause]:

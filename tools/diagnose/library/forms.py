@@ -228,6 +228,11 @@ def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Chan
     return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
 
 
+def no_less(forms: Iterable[Form], there: float) -> tuple[Form, ...]:
+    """Forms that take no more than is there, a size of the cause."""
+    return tuple(replace(f, low=max(f.low, -MOST_LESS * there)) for f in forms)
+
+
 def beside_own_law(cause: Cause, at: Context, places: Mapping[str, Sequence[str]], per: float = 1.0) -> Cause:
     """The cause with forms by which it is a factor on what the machine's parts do by their own laws.
 

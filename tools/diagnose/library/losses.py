@@ -11,7 +11,7 @@ from ....model.machines.roles import Place
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import TABLE, entry, scaled
 from .extras import Extras, Keys
-from .forms import Context, Regime, beside_own_law, weighed
+from .forms import Context, Regime, beside_own_law, no_less, weighed
 
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
@@ -50,7 +50,8 @@ def extra_loss(at: Context, name: str, places: Sequence[Place], as_keys: Keys | 
     if known.rubs:  # what sets in at a speed, a load or a temperature only adds: something begins to rub there
         onsets = tuple(Regime.WORDS.values())
         forms = tuple(replace(f, low=0.0) if f.regime.get("quantity", "").startswith(onsets) else f for f in forms)
-    return known.with_forms(forms)
+    own = sum(at.ranges.powers.get(part, 0.0) for place in places for part in place.parts)
+    return known.with_forms(no_less(forms, own) if own else forms)
 
 
 def _extra_or_factor(at: Context, name: str, places: Sequence[Place]) -> Cause:

@@ -27,6 +27,8 @@ OIL_BESIDE_REFERENCE = 0.25
 LAW = 0.15
 #: The same of what rules give: against SKF's, bearings after Palmgren have .5; seals of ISO/TR 14179-2 .25.
 ROUGH_LAW = 0.5
+#: Share of an instrument's tolerance by which it drifts from one campaign to the next: it is zeroed, or put back.
+DRIFT = 0.5
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
 PLACEMENT_ERROR = 0.08
 #: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
@@ -183,8 +185,8 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
     found += [Term(f"readings of {name}", columns, loose=INPUT) for name, columns in given.items()]
     fixed = [(s.name, k, np.where(o.entries.sensor == i, s.offset_sd, 0.0)[:, None]) for k, o, i, s in each]
     fixed += [(n, k, c[:, None]) for k, (o, s) in pairs for n, c in given_tolerance(o, s)]
-    tied = {name: columns.sum(axis=1, keepdims=True) for name, columns in by_name(fixed, sizes).items()}
-    found += [Term(f"tolerance of {name}", column) for name, column in tied.items()]
+    whole = {name: (columns.sum(axis=1), columns) for name, columns in by_name(fixed, sizes).items()}
+    found += [Term(f"tolerance of {n}", np.column_stack([all_, DRIFT * each])) for n, (all_, each) in whole.items()]
     days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
     found.append(Term("days", own := stacked(days, sizes), loose=DAY, passing=own))
     found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
