@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..model.machines.roles import Roles
 from ..model.machines.spec import PartSpec
@@ -21,6 +23,9 @@ DEFAULT_SD: Mapping[str, float] = {
     "cap": 0.10,
 }
 
+#: Least share of what a rule leaves open by which a value deviates where the rule holds.
+NEAREST = 0.05
+
 
 @dataclass(frozen=True)
 class Nuisance:
@@ -33,7 +38,8 @@ class Nuisance:
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
         by_oil: whether it is another one with each oil
-        rough: whether it follows from rules, which leave its law open, too
+        near: share of the standard deviation by which it deviates where a rule holds that gives it; 1 without a rule.
+            A rule that does not hold leaves the law open, too
         parts, connections: what is added to the machine for it, neutral
     """
 
@@ -43,7 +49,7 @@ class Nuisance:
     wide: float
     refilled: bool = False
     by_oil: bool = False
-    rough: bool = False
+    near: float = 1.0
     parts: tuple[PartSpec, ...] = ()
     connections: tuple[tuple[str, ...], ...] = ()
 
@@ -114,7 +120,7 @@ GROUPS: tuple[Group, ...] = (
 
 
 def nuisances(
-    roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mapping[str, float], rough: Collection[str] = ()
+    roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mapping[str, float], rules: Mapping[str, float] = {}
 ) -> tuple[Nuisance, ...]:
     """All groups that the machine has, each with its prior.
 
@@ -122,14 +128,13 @@ def nuisances(
         roles: of the machine
         prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
-        rough: paths of what rules give: they leave the laws open, too
+        rules: the same of what rules give, which may hold, too
     """
     kinds = {p.name: p.type for p in roles.spec.parts}
 
-    def sd_of(group: Group, path: str) -> float:
+    def sd_of(group: Group, path: str, stated: float | None) -> float:
         """Standard deviation of one parameter: the card's own, the rig file's, or that of the group."""
         part, _, key = path.partition(".")
-        stated = uncertainties.get(path)
         for known in (path, f"{kinds[part]}.{key}"):
             if known in prior_sd:
                 return prior_sd[known]
@@ -139,12 +144,13 @@ def nuisances(
 
     found: list[Nuisance] = []
     for group in GROUPS:
-        sds = {path: sd_of(group, path) for path in group.paths(roles) if roles.value(path)}  # zero stays zero
-        if sds:
-            most = max(sds.values())
-            exponents = {path: sd / most if most else 1.0 for path, sd in sds.items()}
-            by_rule = not sds.keys().isdisjoint(rough)
-            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, by_rule))
+        paths = [path for path in group.paths(roles) if roles.value(path)]  # zero stays zero
+        if paths:
+            sds = [sd_of(group, path, rules.get(path, uncertainties.get(path))) for path in paths]
+            most, near = max(sds), max(sd_of(group, path, uncertainties.get(path)) for path in paths)
+            exponents = {path: sd / most if most else 1.0 for path, sd in zip(paths, sds, strict=True)}
+            share = float(np.clip(near / most, NEAREST, 1.0)) if most else 1.0
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil, share))
     return tuple(found)
 
 

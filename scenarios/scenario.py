@@ -139,10 +139,10 @@ class Scenario:
         return frozenset(path for path in paths if not self.value_sources.get(path, "").startswith(FROM_DATA))
 
     @property
-    def uncertainties_before_data(self) -> dict[str, float]:
-        """Path -> standard uncertainty of its value in SI, but for what data gave together with other values."""
+    def rules(self) -> dict[str, float]:
+        """Path -> standard uncertainty of its value in SI, of what rules give."""
         known = self.standard_uncertainties
-        return {**self.uncertainties, **{path: known[path] for path in sorted(self.rough)}}
+        return {path: known[path] for path in sorted(self.rough)}
 
     @cached_property
     def types(self) -> dict[str, type[Component]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,9 +34,6 @@ Progress = Callable[[str, float], None]
 
 #: Probability from which a cause that only logs can show is told.
 ALONE = 0.1
-#: Prior odds that a rule is as far from the machine as it leaves open, against as near as what else a rig file says: of
-#: fifteen losses of four units by other laws, three are near.
-ROUGH = 3.0
 #: What is said of a rig whose values are so.
 ROUGHLY = "values of this rig follow from rules and count as uncertain as its file says; a healthy reference tells more"
 #: Standard deviations at the usual size below which no reading moves with a cause.
@@ -65,7 +61,8 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
     options = Options(request.alpha, request.seed, request.causes, logs.causes if logs else ())
-    found = temper(_weighed(made, options, lambda stage, done: then(stage, 0.05 + 0.75 * done)))
+    found = weigh(made.problem, made.formulas, options, lambda stage, done: then(stage, 0.05 + 0.75 * done))
+    found = temper(found)
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)
@@ -77,17 +74,6 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)
     return with_words(_with_logs(findings, logs, made.causes) if logs else findings)
-
-
-def _weighed(made: Setting, options: Options, progress: Progress) -> Found:
-    """All hypotheses; of a rig by rules with values as uncertain as these leave them, or closer if the data say so."""
-    if made.closer is None:
-        return weigh(made.problem, made.formulas, options, progress)
-    close = weigh(made.closer, made.formulas, options, lambda stage, done: progress(stage, done / 2))
-    options = replace(options, known=close.hypotheses[:1])
-    rough = weigh(made.problem, made.formulas, options, lambda stage, done: progress(stage, 0.5 + done / 2))
-    near, far = (f.hypotheses[0].log_joint - np.log(f.probabilities[0]) for f in (close, rough))
-    return close if near > far + sum(n.rough for n in made.problem.data.nuisances) * np.log(ROUGH) else rough
 
 
 def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) -> Findings:
@@ -107,7 +93,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     rows, isolability = pictures.rows(found, leader), judge_design(Effects(found.first.candidates, found.first.white))
     seen = "thermometers" if all(s.kind.endswith("_temp") for s in data.read) else "readings"
     extended, cut = rig_file(made, found, leader)
-    roughly = [ROUGHLY] if any(n.rough for n in found.problem.data.nuisances) and reference is None else []
+    roughly = [ROUGHLY] if any(n.near < 1 for n in found.problem.data.nuisances) else []
     blind = {one.cause: f"not visible in these {seen}" for one in isolability if one.visible < BLIND}
     return Findings(
         **compose.common(made, found, decision),

@@ -40,7 +40,6 @@ class Setting:
         spec: driven and lubricated as in the campaign
         formulas: all forms of all causes
         problem: data, and a reference where there is one
-        closer: the same with values less uncertain than rules leave them, where the file says that and no reference is
     """
 
     scenario: Scenario
@@ -48,7 +47,6 @@ class Setting:
     causes: tuple[Cause, ...]
     formulas: tuple[Formula, ...]
     problem: Problem
-    closer: Problem | None = None
 
     @cached_property
     def nominal(self) -> Nominal:
@@ -88,9 +86,10 @@ def setting(
     causes = library(roles, ranges, sensors, libraries)
     wide = reference is not None
     films = thin_film_friction(Context(roles, ranges, sensors))
-    stated = nuisances(roles, card.prior_sd, driven.uncertainties_before_data, driven.rough)
+    stated = nuisances(roles, card.prior_sd, driven.uncertainties, driven.rules)
     known = (*stated, *([films] if films else ()))
-    known = tuple(n for n in (replace(n, sd=max(n.sd, n.wide)) if wide else n for n in known) if n.sd > 0)
+    known = tuple(replace(n, sd=max(n.sd, n.wide), near=1.0) for n in known) if wide else known
+    known = tuple(n for n in known if n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)
@@ -100,11 +99,7 @@ def setting(
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
     plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
-    made = Setting(scenario, spec, causes, formulas, Problem(observed, card.day_cooling_sd))
-    if wide or not driven.rough:
-        return made
-    near = [n for n in nuisances(roles, card.prior_sd, driven.uncertainties) if n.sd > 0]
-    return replace(made, closer=Problem([Observed(plant, data, (*near, day), oils, point)], card.day_cooling_sd))
+    return Setting(scenario, spec, causes, formulas, Problem(observed, card.day_cooling_sd))
 
 
 def ranges_of(

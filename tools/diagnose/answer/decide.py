@@ -224,7 +224,7 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
         kept &= np.isin(np.arange(problem.m), entries)
     fixed = [t for t in fit.noise.terms if t.loose == 0 and t.columns is not None]
     V = fit.noise.covariance - sum((t.matrix for t in fixed), np.zeros((problem.m, problem.m)))
-    known = np.concatenate([fit.look.jacobian, *(t.columns for t in fixed if t.columns is not None)], axis=1)
+    known = np.concatenate([fit.look.by_sd, *(t.columns for t in fixed if t.columns is not None)], axis=1)
     r = problem.measured - fit.look.shown + fit.look.jacobian @ fit.look.x
     white = White.of(V[np.ix_(kept, kept)])
     Q, d, _ = np.linalg.svd(white(known[kept]), full_matrices=False)

@@ -35,7 +35,7 @@ SPREADS = np.geomspace(0.1, 32.0, 33)
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
     fit, J = h.fit, h.fit.look.jacobian
-    x, vector, G = fit.look.x, Vector(problem, fit.look.acting), White.of(fit.noise.covariance)(J)
+    x, vector, G = fit.look.x, Vector(problem, fit.look), White.of(fit.noise.covariance)(J)
     covariance = np.linalg.inv(G.T @ G + np.diag(vector.precision))
     covariance[vector.sizes, vector.sizes] += (fit.form * x[vector.sizes]) ** 2
     return x, covariance
@@ -43,7 +43,7 @@ def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
 
 def _of_cause(problem: Problem, h: Hypothesis, cause: str) -> tuple[np.ndarray, np.ndarray]:
     """The part of the posterior that is of a cause and what follows it: its size, its shapes."""
-    begin = Vector(problem, h.fit.look.acting).sizes[h.fit.causes.index(cause)]
+    begin = Vector(problem, h.fit.look).sizes[h.fit.causes.index(cause)]
     x, covariance = posterior(problem, h)
     return x[begin:], covariance[begin:, begin:]
 
@@ -181,7 +181,7 @@ def impacts(
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
     change = (fit.look.shown - problem.shown(fit.look.z, without))[problem.own]
-    spans = zip(Vector(problem, fit.look.acting).sizes, fit.look.acting, strict=True)
+    spans = zip(Vector(problem, fit.look).sizes, fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
     covariance, jacobian = posterior(problem, h)[1][np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
     run, told = np.isfinite(change), dict[str, findings.Impact]()  # without the cause the machine may run away

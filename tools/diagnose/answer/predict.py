@@ -67,7 +67,7 @@ def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:
     good = np.isfinite(seen.shown)
     if not good.any():
         return table
-    joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, problem.nz, points=1)
+    joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, fit.look.sd, points=1)
     scales = {t.name: s for t, s in zip(fit.noise.loose, fit.noise.scales, strict=True)}
     known = {t.name for t in fit.noise.terms}
     V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint if t.name in known)

@@ -11,6 +11,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from ....model.errors import SolveError
+from ..model.noise import laws
 from .evidence import White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem, priors
 
@@ -26,6 +27,9 @@ TRUSTED = 0.7
 ROUNDS = 4
 #: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
 STALLED = 0.5
+#: Prior odds that a rule is as far from the machine as it leaves open, against as near as what else a rig file says: of
+#: fifteen losses of four units by other laws, three are near.
+OPEN = 3.0
 #: Longest step of a nuisance.
 LONGEST = 1.5
 #: A size (or that share of it).
@@ -64,7 +68,7 @@ class Fit:
 
     def moved(self, problem: Problem, effect: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes where they go, to first order, as something with an effect (M,) joins."""
-        vector, white = Vector(problem, self.look.acting), White.of(self.noise.covariance)
+        vector, white = Vector(problem, self.look), White.of(self.noise.covariance)
         J = white(self.look.jacobian)
         change = np.linalg.solve(J.T @ J + np.diag(vector.precision), J.T @ white(effect))
         return vector.split(np.clip(self.look.x - change, vector.low, vector.high))
@@ -79,7 +83,7 @@ class Fit:
         Nuisances, shapes and sizes of the hypothesis are uncertain by their priors, sizes by the widest.
         """
         J = self.look.jacobian
-        wide = J / np.sqrt(Vector(problem, self.look.acting).precision)
+        wide = J / np.sqrt(Vector(problem, self.look).precision)
         white = White.of(self.scatter(problem) + wide @ wide.T)
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
 
@@ -96,15 +100,15 @@ def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
 
 
 class Vector:
-    """The vector of a problem and some causes: priors, those of sizes the widest, bounds, longest steps, places."""
+    """The vector of a problem at a look: priors, those of sizes the widest, bounds, longest steps, places."""
 
-    def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
-        self.nz, self.acting = problem.nz, tuple(acting)
+    def __init__(self, problem: Problem, look: Look) -> None:
+        self.nz, self.acting = problem.nz, look.acting
         low, high = ([side] for side in problem.data.limits[:, : self.nz])
-        precision, longest = [np.ones(self.nz)], [np.full(self.nz, LONGEST)]
+        precision, longest = [look.sd**-2.0], [np.full(self.nz, LONGEST)]
         self.sizes: list[int] = []
         begin = self.nz
-        for a in acting:
+        for a in look.acting:
             a_low, a_high = a.bounds
             low.append(a_low)
             high.append(a_high)
@@ -158,11 +162,13 @@ def fitted(
     noise = line.scattered(problem.noise(look, scales))
     for k in range(ROUNDS):
         before, look = look, _settled(problem, look, noise, steps)
-        if look is before:
-            break
-        if k:  # what scatters follows the point: whole ways go to and fro
+        if k and look is not before:  # what scatters follows the point: whole ways go to and fro
             with suppress(SolveError):
-                look = problem.look(*line.vector.split((before.x + look.x) / 2))
+                look = problem.look(*line.vector.split((before.x + look.x) / 2), look.sd)
+        sd = _Line(problem, look).ruled(noise)
+        if look is before and np.array_equal(sd, look.sd):
+            break
+        look = replace(look, sd=sd)
         line = _Line(problem, look)
         noise = line.scattered(noise)
     return line.weighed(noise)
@@ -170,7 +176,7 @@ def fitted(
 
 def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> Look:
     """The look where damped Gauss-Newton converges at a given scatter."""
-    vector, white = Vector(problem, look.acting), White.of(noise.covariance)
+    vector, white = Vector(problem, look), White.of(noise.covariance)
     cost, damping = _cost(problem, vector, white, look), 0.0
     for _ in range(steps):
         J = white(look.jacobian)
@@ -183,7 +189,7 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> Look:
             if damping:
                 change = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
             with suppress(SolveError):
-                trial = problem.look(*vector.split(look.x + change))
+                trial = problem.look(*vector.split(look.x + change), look.sd)
                 gain = cost - _cost(problem, vector, white, trial)
                 if gain > -1e-9:
                     break
@@ -225,27 +231,64 @@ class _Line:
     """A problem linearised at a look: what is known but for the sizes, their effects, and the residual."""
 
     def __init__(self, problem: Problem, look: Look) -> None:
-        self.problem, self.look, self.vector = problem, look, Vector(problem, look.acting)
+        self.problem, self.look, self.vector = problem, look, Vector(problem, look)
         vector, J = self.vector, look.jacobian
-        known = J[:, np.r_[np.arange(vector.nz), vector.shapes]]
+        known = look.by_sd[:, np.r_[np.arange(vector.nz), vector.shapes]]
         self.known, self.G = known @ known.T, J[:, vector.sizes]
         self.residual = problem.measured - look.shown + J @ look.x
         self.prior = low, high, _ = priors(look.acting)
         sizes = look.x[vector.sizes]
         self.free = (sizes > low) & (sizes < high)  # one that stands at its bound explains nothing more
 
+    @property
+    def wide(self) -> np.ndarray:
+        """Covariance (M, M) of what is known, with sizes by their widest prior."""
+        columns = (self.prior[2][-1] * self.G)[:, self.free]
+        return np.asarray(self.known + columns @ columns.T)
+
     def scattered(self, noise: Noise) -> Noise:
         """The scatter here with its most likely scales, from those of a scatter."""
-        columns = (self.prior[2][-1] * self.G)[:, self.free]
-        wide = self.known + columns @ columns.T
-        return self.problem.noise(self.look, noise.scales).fitted(self.residual, wide)
+        return self.problem.noise(self.look, noise.scales).fitted(self.residual, self.wide)
+
+    def ruled(self, noise: Noise) -> np.ndarray:
+        """Standard deviations of the nuisances (nz,): each rule holds where that is likelier beside the others."""
+        problem, look = self.problem, self.look
+        sd, rules = look.sd.copy(), np.flatnonzero(problem.near < 1)
+        if not rules.size:
+            return sd
+
+        def columns(deviations: np.ndarray) -> np.ndarray:
+            """Of each nuisance, by its size and by what its law leaves open (nz, M, k)."""
+            by_law = laws(problem.campaigns, look.seen, deviations, 0).reshape(problem.m, problem.nz, -1)
+            sizes = look.jacobian[:, : problem.nz, None] * deviations[:, None]
+            return np.concatenate([sizes, by_law], axis=2).transpose(1, 0, 2)
+
+        sides = np.array([columns(problem.near), columns(np.ones(problem.nz))])[:, rules]  # 2, rules, M, k
+        now = np.concatenate(columns(sd)[rules], axis=1)
+        white = White.of(problem.noise(look, noise.scales).covariance + self.wide - now @ now.T)
+        e, sides = white(self.residual), np.array([[white(c) for c in side] for side in sides])
+        far = sd[rules] == 1
+
+        def log(far: np.ndarray) -> float:
+            g = np.concatenate(sides[far.astype(int), np.arange(len(rules))], axis=1)
+            S, b = np.eye(g.shape[1]) + g.T @ g, g.T @ e
+            return float(0.5 * b @ np.linalg.solve(S, b) - 0.5 * np.linalg.slogdet(S)[1] + far.sum() * np.log(OPEN))
+
+        best = log(far)
+        for k in [*range(len(rules))] * 2:
+            other = far.copy()
+            other[k] = not far[k]
+            if (value := log(other)) > best:
+                far, best = other, value
+        sd[rules] = np.where(far, 1.0, problem.near[rules])
+        return sd
 
     def weighed(self, noise: Noise) -> Fit:
         """The fit with a scatter, and its evidence."""
         V, look, residual = noise.covariance + self.known, self.look, self.residual
         if not look.acting:
             white = White.of(V)
-            evidence = white.log_density(white(residual)) + noise.log_prior
+            evidence = white.log_density(white(residual)) + noise.log_prior + self._by_rules
             return Fit(look, noise, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
         effects = self._effects()
         rough = _rough(self.problem, effects)
@@ -254,8 +297,13 @@ class _Line:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, *self.prior) + np.log(weight))
-        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior - self._short(noise)
+        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior + self._by_rules - self._short(noise)
         return Fit(look, noise, evidence, FORM[int(np.argmax(logs))][0], effects)
+
+    @property
+    def _by_rules(self) -> float:
+        """Log prior of which rules hold."""
+        return float(-np.log(OPEN) * (self.look.sd < 1).sum())
 
     def _effects(self) -> np.ndarray:
         """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""

@@ -77,18 +77,27 @@ def priors(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray, np.nda
 
 @dataclass(frozen=True)
 class Look:
-    """The readings at one point of the vector (z, t...), their Jacobian (M, d) and what each campaign shows."""
+    """The readings at one point of the vector (z, t...), their Jacobian (M, d) and what each campaign shows.
+
+    `sd` (nz,) are the standard deviations of the nuisances: 1, or less where a rule holds.
+    """
 
     z: np.ndarray
     acting: tuple[Acting, ...]
     shown: np.ndarray
     jacobian: np.ndarray
     seen: tuple[Seen, ...]
+    sd: np.ndarray
 
     @property
     def x(self) -> np.ndarray:
         """The vector: nuisances, then the parameters of each cause."""
         return np.concatenate([self.z, *(a.t for a in self.acting)])
+
+    @property
+    def by_sd(self) -> np.ndarray:
+        """The Jacobian by one standard deviation of each nuisance (M, d)."""
+        return self.jacobian * np.r_[self.sd, np.ones(self.jacobian.shape[1] - len(self.sd))]
 
 
 @dataclass(frozen=True)
@@ -162,6 +171,8 @@ class Problem:
         self.campaigns, self.day_sd, self.aside, self.more = tuple(campaigns), day_sd, aside, more
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
+        #: Standard deviations of the nuisances where all rules hold (nz,).
+        self.near = np.array([n.near for n in self.data.nuisances[:-1]])
         self.measured = np.concatenate([o.measured for o in campaigns])
         self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
@@ -210,8 +221,8 @@ class Problem:
         vars(found).update(changes)
         return found
 
-    def look(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> Look:
-        """Readings and Jacobian.
+    def look(self, z: np.ndarray, acting: Sequence[Acting] = (), sd: np.ndarray | None = None) -> Look:
+        """Readings and Jacobian, beside standard deviations of the nuisances: none of the rules holds if None.
 
         Raises:
             SolveError: the model cannot be run there
@@ -232,7 +243,8 @@ class Problem:
                 blocks[part, self.nz :] = found.by[:, self.nz + 1 :]
             seen.append(found)
             begin += o.m
-        return Look(np.array(z), tuple(acting), np.concatenate([s.shown for s in seen]), blocks, tuple(seen))
+        sd = np.ones(self.nz) if sd is None else sd
+        return Look(np.array(z), tuple(acting), np.concatenate([s.shown for s in seen]), blocks, tuple(seen), sd)
 
     def shown(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> np.ndarray:
         """Readings (M,), NaN where the model cannot be run."""
@@ -249,7 +261,7 @@ class Problem:
 
     def scatters(self, look: Look) -> list[Term]:
         """What scatters at a look, all readings in it."""
-        return terms(self.campaigns, look.seen, self.day_sd, self.nz)
+        return terms(self.campaigns, look.seen, self.day_sd, look.sd)
 
     def far(self, aside: Aside, look: Look) -> Term:
         """The term that makes a reading count for nothing."""

@@ -65,7 +65,6 @@ class Options:
         seed: of the draws
         most: causes that may act together
         wanted: causes that are fitted however they look
-        known: hypotheses about the same readings on other priors, which are fitted as well
         critical: log prior odds of nothing against one cause, where they and gross readings are known; else draws of
             the null tell them
     """
@@ -74,7 +73,6 @@ class Options:
     seed: int = 0
     most: int = 8
     wanted: Collection[str] = ()
-    known: Sequence[Hypothesis] = ()
     critical: float | None = None
 
 
@@ -130,10 +128,6 @@ class Weighing:
 
     def run(self) -> Found:
         """Everything."""
-        for h in self.options.known:
-            with suppress(SolveError):
-                start = h.fit.look.acting, self.null.look.z, h.fit.noise.scales
-                self._fit_exactly(self._beside(self.problem.aside, h.extras), *start, h.extras, h.forms)
         for k in range(LOOKS):
             if k and self.p_any > QUIET and not self.leader().causes:
                 break
@@ -168,7 +162,7 @@ class Weighing:
         z, campaigns = np.zeros(self.problem.nz), self.problem.campaigns
         if len(campaigns) > 1:
             z = fitted(Problem(campaigns[1:], self.problem.day_sd), (), z).look.z
-        look = self.problem.look(z)
+        look = self.problem.look(z, (), self.problem.near)
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
     def search(self, near: Fit, look: Screen, stage: str, begun: float, scatters: int = sets.SCATTERS) -> list[TermSet]:
@@ -185,10 +179,10 @@ class Weighing:
         terms += gross(problem, near.look)
         terms += spreads(problem, near.look, self.spreads, self.prior)
         terms += remainders(problem)
-        known = J[:, : problem.nz] @ J[:, : problem.nz].T
+        wide = near.look.by_sd[:, : problem.nz]
         noise = problem.noise(near.look)
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = Linear(terms, residual, known, noise, self.prior, self.critical, self.options.most)
+        self.linear = Linear(terms, residual, wide @ wide.T, noise, self.prior, self.critical, self.options.most)
         starts = [Scatter((0.0,) * len(noise.loose)), Scatter(tuple(near.noise.scales.tolist()))]
         if self.hypotheses and (extras := (leader := self.leader()).extras):
             sizes = {e.of.label: e.size for e in extras}
@@ -303,7 +297,7 @@ class Weighing:
         """Fits a combination exactly from where its likeliest set is expected."""
         terms, s = self.linear.terms, own.best
         a = White.of(self.linear.covariance(s.scatter.scales, s.wide)).back(self.linear.residual)
-        z = near.look.jacobian[:, : self.whole.nz].T @ a
+        z = near.look.sd**2 * (near.look.jacobian[:, : self.whole.nz].T @ a)
         t = np.array(s.widths) * (self.linear.sized(s.sized).T @ a)
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]

@@ -165,14 +165,16 @@ def by_name(parts: Iterable[tuple[str, int, np.ndarray]], sizes: Sequence[int]) 
     return {name: stacked(own, sizes) for name, own in groups.items()}
 
 
-def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, day: int, points: int = 0) -> list[Term]:
+def terms(
+    campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, sd: np.ndarray, points: int = 0
+) -> list[Term]:
     """All terms of some campaigns of one rig with the same instruments, at a linearisation.
 
     Args:
         campaigns: the first is the one in which causes act
         seen: what each shows there
         day_sd: standard deviation of the cooling from day to day
-        day: number of the direction that is the cooling of a day
+        sd: standard deviations of the nuisances but for the cooling of a day, which comes last
         points: how many campaigns, the last ones, are not measured but foreseen
     """
     sizes = [o.m for o in campaigns]
@@ -187,7 +189,7 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
     fixed += [(n, k, c[:, None]) for k, (o, s) in pairs for n, c in given_tolerance(o, s)]
     whole = {name: (columns.sum(axis=1), columns) for name, columns in by_name(fixed, sizes).items()}
     found += [Term(f"tolerance of {n}", np.column_stack([all_, DRIFT * each])) for n, (all_, each) in whole.items()]
-    days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
+    days = [(k, day_sd * per_group(s.by[:, len(sd)], o.campaign.test[o.row])) for k, (o, s) in pairs]
     found.append(Term("days", own := stacked(days, sizes), loose=DAY, passing=own))
     found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
     fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
@@ -199,7 +201,7 @@ def terms(campaigns: Sequence[Measured], seen: Sequence[Seen], day_sd: float, da
         share = OIL if measured == 1 else OIL_BESIDE_REFERENCE
         found.append(Term("oils", np.concatenate([share * _oils(o, s, names) for _, (o, s) in pairs])))
     if measured == 1:
-        found.append(Term("laws", laws(campaigns, seen, points)))
+        found.append(Term("laws", laws(campaigns, seen, sd, points)))
     if any(o.campaign.series for o in campaigns):
         found += _logged(campaigns)
     if measured > 1:
@@ -217,14 +219,17 @@ def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
     yield Term("dwells as logged", variance=DWELL**2 * stated)
 
 
-def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], points: int) -> np.ndarray:
+def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], sd: np.ndarray, points: int) -> np.ndarray:
     """Effects (M, k) of losses and heat paths that follow the point a little otherwise than their laws say.
+
+    Columns of one nuisance stand together.
 
     With a healthy campaign of the same rig the remainder says it.
     """
     blocks = []
     for o, s, (linear, _) in zip(campaigns, seen, smooth_features(campaigns, points), strict=True):
-        shares = np.array([ROUGH_LAW if nuisance.rough else LAW for nuisance in o.nuisances[:-1]])
+        near = np.array([nuisance.near for nuisance in o.nuisances[:-1]])
+        shares = np.where((near < 1) & (sd == 1), ROUGH_LAW, LAW * sd)
         blocks.append(((shares * s.by[:, : len(shares)])[:, :, None] * linear[o.row, None, 1:]).reshape(o.m, -1))
     return np.concatenate(blocks)
 

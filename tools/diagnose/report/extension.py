@@ -235,7 +235,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> tuple[str, tuple[
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
 
     def at(x: np.ndarray) -> Extended:
-        z, acting = Vector(found.problem, h.fit.look.acting).split(x)
+        z, acting = Vector(found.problem, h.fit.look).split(x)
         told = values(found, z)
         added = [calibration(n, told) for n in found.problem.data.nuisances if n.parts]
         causes = [Applied(a.id, a.formula.cause.doc, a.formula.form, a.formula.theta(a.t)) for a in acting]
