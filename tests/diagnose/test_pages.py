@@ -152,6 +152,6 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
         alone = {c["id"]: c["probability"] for c in views[channel]["causes"]}
         for cause, probability in causes.items():
             assert alone[cause] == pytest.approx(probability, abs=0.02)
-    assert campaign["answers"][0]["probability"] == pytest.approx(0.73, abs=0.02)
+    assert campaign["answers"][0]["probability"] == pytest.approx(0.72, abs=0.02)
     assert campaign["test"]["p_adequacy"] == pytest.approx(0.84, abs=0.02)
     assert all([cause] in answer["causes"] for answer in campaign["answers"] for cause in IN_ALL)

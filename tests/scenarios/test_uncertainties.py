@@ -27,7 +27,7 @@ def test_values_are_uncertain_together(tmp_path: Path) -> None:
     assert rig.standard_uncertainties == pytest.approx({"foot.G": math.hypot(0.19, 0.25), "cooling.A": 0.03})
     assert rig.with_values({"foot.G": 9.0}).joint_uncertainties == {"heat": {"cooling.A": -0.03}}
     assert rig.rough == set()  # both are calibrated
-    assert rig.uncertainties_before_data == {"foot.G": 0.19}
+    assert rig.rules == {}
 
 
 @pytest.mark.parametrize(

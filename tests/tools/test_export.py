@@ -359,7 +359,7 @@ def test_the_sentence_for_people(gearheat, tmp_path):
     assert answer.code == 0, answer.err
     first, second, third = answer.out.splitlines()
     assert (
-        first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 103 parameters, for {compiling.host_platform().name}"
+        first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 104 parameters, for {compiling.host_platform().name}"
     )
     assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
     assert third == 'catalogue values not checked against a print: oil "PAOR": oil.T_pour'

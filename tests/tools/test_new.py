@@ -71,6 +71,7 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
     assert found["ratio"] == pytest.approx(PLATES[name][1], rel=0.02)
     assert (0.7 if "worm" in name else 0.9) < found["efficiency"] < 0.995
     assert 21 < found["oil_degC"] < (105 if "worm" in name else 80)  # a worm of 1.5 kW in mineral oil wants a fan
+    assert "{{" not in path.read_text("utf-8")
     scenario = load(path)
     assert all(source for source in scenario.value_sources.values())
     assert found["assumed"] > 50
@@ -356,6 +357,9 @@ def test_a_fan_that_is_not_needed_is_told(gearheat, tmp_path):
     oil, eta = bare.json["oil_degC"], 100 * bare.json["efficiency"]
     assert f"without one the oil is at {oil:.1f} degC, the efficiency {eta:.2f} %" in fan.err
     assert max(answer.json["oil_degC"] for answer in (fan, blown)) < oil - 2
+    assert "Leave out --fan, or give the housing that has one by --housing." in fan.err
+    boxed = gearheat("new", "it", *plate, "--fan", "--housing", "1 m2", "-o", tmp_path / "boxed.toml")
+    assert "Leave out --fan." in boxed.err
 
 
 def test_a_motor_at_the_housing_heats_it(gearheat, tmp_path):

@@ -30,7 +30,7 @@ def test_the_short_answer_is_short(gearheat, mine: Path) -> None:
     assert len(lines) < 110 and max(map(len, lines)) <= 80
     for told in ("BevelGearPair", "input.w", "States: oil.T, gears.T", "efficiency.P_loss", "T_oil_C", "cooling.A"):
         assert told in answer.out
-    assert "325 parameters, 36 choices, 88 outputs, 68 laws with --all" in answer.out
+    assert "326 parameters, 36 choices, 88 outputs, 68 laws with --all" in answer.out
     assert "middle_bearing_a.K_Z" not in answer.out
 
 

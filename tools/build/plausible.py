@@ -91,9 +91,10 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
             f" to {1000 * height:.0f} mm, where the axes are. Change --oil-volume."
         )
     if (bare := sizes["without_fan"]) and bare["oil_degC"] + HALL < WARM[1]:
+        housing = "" if around.boxed else ", or give the housing that has one by --housing"
         yield (
             f"it needs no fan: without one the oil is at {bare['oil_degC']:.1f} degC, the efficiency"
-            f" {100 * bare['efficiency']:.2f} %. Leave out --fan, or give the housing that has one by --housing."
+            f" {100 * bare['efficiency']:.2f} %. Leave out --fan{housing}."
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:

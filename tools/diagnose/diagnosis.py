@@ -61,8 +61,7 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
     options = Options(request.alpha, request.seed, request.causes, logs.causes if logs else ())
-    found = weigh(made.problem, made.formulas, options, lambda stage, done: then(stage, 0.05 + 0.75 * done))
-    found = temper(found)
+    found = temper(weigh(made.problem, made.formulas, options, lambda stage, done: then(stage, 0.05 + 0.75 * done)))
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)

@@ -123,11 +123,11 @@ def test_a_walk_beside_its_own_scatter() -> None:
 
 
 def test_one_more_scatter_counts_as_where_it_whitens() -> None:
-    """It is weighed by what a set and the scatters beside it leave of products, never whitened anew."""
+    """It is weighed by what a set leaves of products, never whitened anew."""
     walk, pairs, halves = np.tril(np.ones((M, M)))[:, ::4], np.kron(np.eye(10), np.ones((4, 1))), np.eye(M)[:, :10]
     problem = linear(noise(4), [Term(f"s{k}", f"s{k}", -3.0, C, SPREADS) for k, C in enumerate((walk, pairs, halves))])
     table = sets.Table(problem)
-    white = sets.Whitened(table, Scatter((0.1,), ((CAUSES, 0.5),)), sets.Whitened(table, Scatter((0.1,))))
+    white = sets.Whitened(table, Scatter((0.1,), ((CAUSES, 0.5),)))
     own = white.scored([3, 7], [0.8, 1.6])
 
     def density(scatter: Scatter) -> float:

@@ -22,7 +22,7 @@ class Turning:
     """Readings that fall again behind a size, and never get as far as they are measured."""
 
     nz, m, own, data = 1, 5, slice(0, 5), SimpleNamespace(m=5, limits=np.array([[-6.0], [6.0]]))
-    alike, same = np.ones((5, 5)), np.eye(5)
+    alike, same, near = np.ones((5, 5)), np.eye(5), np.ones(1)
     measured = 4.0 * BY_T
 
     def shown(self, z: np.ndarray, acting: tuple[Acting, ...]) -> np.ndarray:
@@ -40,6 +40,7 @@ def stalled(problem: Any) -> fit.Fit:
     slope = (1 - (x[1] / TURNS) ** 2) * np.exp(-0.5 * (x[1] / TURNS) ** 2)
     J = np.column_stack([BY_Z, BY_T * slope])
     look = SimpleNamespace(z=x[:1], acting=acting, shown=problem.shown(x[:1], acting), jacobian=J, x=x)
+    look.by_sd, look.sd = J, np.ones(1)
     return _Line(problem, look).weighed(NOISE)  # type: ignore[arg-type]
 
 

@@ -49,7 +49,7 @@ def made() -> Made:
     null = fitted(made.problem, (), np.zeros(made.problem.nz))
     formula = next(f for f in made.formulas if f.cause.id == CAUSE)
     start = Acting(formula, np.r_[0.5, np.zeros(formula.size - 1)])
-    fit = fitted(made.problem, [start], null.look.z, null.noise.scales, steps=2)
+    fit = fitted(made.problem, [start], null.look.z, null.noise.scales)
     h = Hypothesis((CAUSE,), fit, 0.0)
     nothing = Hypothesis((), null, -3.0)
     chances = np.array([0.9, 0.1])

@@ -18,15 +18,8 @@ KINDS = {
     "efficiency": ("%", 100.0, "efficiency"),
     "current": ("A", 1.0, "current"),
 }
-#: Unit of a result -> ending of a channel's name, and of the name of a change of it.
-ENDINGS = {
-    "degC": ("_C", "_K"),
-    "N.m": ("_Nm", "_Nm"),
-    "W": ("_W", "_W"),
-    "rpm": ("_rpm", "_rpm"),
-    "%": ("_pct", "_pct"),
-    "A": ("_A", "_A"),
-}
+#: Unit of a result -> ending of a channel's name.
+ENDINGS = {"degC": "_C", "N.m": "_Nm", "W": "_W", "rpm": "_rpm", "%": "_pct", "A": "_A"}
 
 #: Levels further apart than this share of their range are different ones.
 GAP = 0.06
@@ -59,8 +52,8 @@ def difference(sensor: Sensor, value: float) -> float:
 
 def change_name(sensor: Sensor) -> str:
     """Name of a change of its readings: T_oil_K."""
-    ending, changed = ENDINGS[unit(sensor)]
-    return sensor.name.removesuffix(ending) + changed
+    ending = ENDINGS[unit(sensor)]
+    return sensor.name.removesuffix(ending) + ("_K" if ending == "_C" else ending)
 
 
 def channel(sensor: Sensor) -> Channel:

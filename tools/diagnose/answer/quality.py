@@ -116,8 +116,8 @@ def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
     """Nuisances beyond `OFF` of their prior, the farthest first."""
     plant, told = found.problem.data.plant, []
     x, _ = posterior(found.problem, h)
-    for nuisance, z in zip(found.problem.data.nuisances, x[: found.problem.nz], strict=False):
-        if abs(z) <= OFF:
+    for nuisance, z, sd in zip(found.problem.data.nuisances, x, h.fit.look.sd, strict=False):
+        if abs(z) <= OFF * sd:
             continue
         factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
         values = [path for path in factors if path in plant.place]
@@ -128,7 +128,7 @@ def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
             file = float(plant.p[place])
             known = {"paths": tuple(values), "file": file, "found": file * factors[values[0]]}
             known["unit"] = plant.flat.parameters[place].unit
-        told.append(NuisanceOff(name=nuisance.name, z=z, factor=factor, **known))
+        told.append(NuisanceOff(name=nuisance.name, z=z / sd, factor=factor, **known))
     return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
+from scipy.special import betaln
 
 from ....model.errors import SolveError
 from ..model.noise import laws
@@ -27,9 +28,9 @@ TRUSTED = 0.7
 ROUNDS = 4
 #: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
 STALLED = 0.5
-#: Prior odds that a rule is as far from the machine as it leaves open, against as near as what else a rig file says: of
-#: fifteen losses of four units by other laws, three are near.
-OPEN = 3.0
+#: Counts of rules that are as far from the machine as they leave open, and as near as what else a rig file says, before
+#: any data: of fifteen losses of four units by other laws, three are near.
+OPEN = (1.5, 0.5)
 #: Longest step of a nuisance.
 LONGEST = 1.5
 #: A size (or that share of it).
@@ -145,40 +146,39 @@ class Vector:
 
 
 def fitted(
-    problem: Problem, acting: Sequence[Acting], z: np.ndarray, scales: np.ndarray | None = None, steps: int = STEPS
+    problem: Problem, acting: Sequence[Acting], z: np.ndarray, scales: np.ndarray | None = None, near: bool = False
 ) -> Fit:
     """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 
     Args:
         acting, z: causes and nuisances where the fit begins
         scales: logarithms of the scales of its loose terms where it begins
-        steps: at most
+        near: whether it begins where all rules hold, or where none does
 
     Raises:
         SolveError: the model cannot be run where the fit begins
     """
     look = _begun(problem, acting, np.clip(z, *problem.data.limits[:, : problem.nz]))
-    line = _Line(problem, look)
+    line = _Line(problem, look := replace(look, sd=problem.near) if near else look)
     noise = line.scattered(problem.noise(look, scales))
     for k in range(ROUNDS):
-        before, look = look, _settled(problem, look, noise, steps)
+        before, look = look, _settled(problem, look, noise)
         if k and look is not before:  # what scatters follows the point: whole ways go to and fro
             with suppress(SolveError):
                 look = problem.look(*line.vector.split((before.x + look.x) / 2), look.sd)
-        sd = _Line(problem, look).ruled(noise)
+        sd = _Line(problem, look).ruled(noise) if (problem.near < 1).any() else look.sd
         if look is before and np.array_equal(sd, look.sd):
             break
-        look = replace(look, sd=sd)
-        line = _Line(problem, look)
+        line = _Line(problem, look := replace(look, sd=sd))
         noise = line.scattered(noise)
     return line.weighed(noise)
 
 
-def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> Look:
+def _settled(problem: Problem, look: Look, noise: Noise) -> Look:
     """The look where damped Gauss-Newton converges at a given scatter."""
     vector, white = Vector(problem, look), White.of(noise.covariance)
     cost, damping = _cost(problem, vector, white, look), 0.0
-    for _ in range(steps):
+    for _ in range(STEPS):
         J = white(look.jacobian)
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
@@ -252,44 +252,42 @@ class _Line:
 
     def ruled(self, noise: Noise) -> np.ndarray:
         """Standard deviations of the nuisances (nz,): each rule holds where that is likelier beside the others."""
-        problem, look = self.problem, self.look
-        sd, rules = look.sd.copy(), np.flatnonzero(problem.near < 1)
-        if not rules.size:
+        problem, look, rules = self.problem, self.look, np.flatnonzero(self.problem.near < 1)
+
+        def columns(sd: np.ndarray) -> np.ndarray:
+            """Of each rule by its size, and by what its law leaves open (M, k)."""
+            by_law = laws(problem.campaigns, look.seen, sd, 0).reshape(problem.m, problem.nz, -1)
+            whole = np.concatenate([look.jacobian[:, : problem.nz, None] * sd[:, None], by_law], axis=2)
+            return np.asarray(whole[:, rules].reshape(problem.m, -1))
+
+        now, near, far = map(columns, (look.sd, problem.near, np.ones(problem.nz)))
+        white = White.of(problem.noise(look, noise.scales).covariance + self.wide - now @ now.T)
+        near, far, e = white(near), white(far), white(self.residual)
+
+        def log(sd: np.ndarray) -> float:
+            """Log density, up to a constant."""
+            G = np.where(np.repeat(sd[rules] == 1, near.shape[1] // len(rules)), far, near)
+            S, b = np.eye(len(G.T)) + G.T @ G, G.T @ e
+            return float(0.5 * b @ np.linalg.solve(S, b) - 0.5 * np.linalg.slogdet(S)[1]) + self.by_rules(sd)
+
+        def climbed(sd: np.ndarray) -> np.ndarray:
+            for k in [*rules] * 2:
+                other = sd.copy()
+                other[k] = problem.near[k] if sd[k] == 1 else 1.0
+                sd = max(sd, other, key=log)
             return sd
 
-        def columns(deviations: np.ndarray) -> np.ndarray:
-            """Of each nuisance, by its size and by what its law leaves open (nz, M, k)."""
-            by_law = laws(problem.campaigns, look.seen, deviations, 0).reshape(problem.m, problem.nz, -1)
-            sizes = look.jacobian[:, : problem.nz, None] * deviations[:, None]
-            return np.concatenate([sizes, by_law], axis=2).transpose(1, 0, 2)
+        return max(map(climbed, (problem.near, np.ones(problem.nz))), key=log)
 
-        sides = np.array([columns(problem.near), columns(np.ones(problem.nz))])[:, rules]  # 2, rules, M, k
-        now = np.concatenate(columns(sd)[rules], axis=1)
-        white = White.of(problem.noise(look, noise.scales).covariance + self.wide - now @ now.T)
-        e, sides = white(self.residual), np.array([[white(c) for c in side] for side in sides])
-        far = sd[rules] == 1
-
-        def log(far: np.ndarray) -> float:
-            g = np.concatenate(sides[far.astype(int), np.arange(len(rules))], axis=1)
-            S, b = np.eye(g.shape[1]) + g.T @ g, g.T @ e
-            return float(0.5 * b @ np.linalg.solve(S, b) - 0.5 * np.linalg.slogdet(S)[1] + far.sum() * np.log(OPEN))
-
-        best = log(far)
-        for k in [*range(len(rules))] * 2:
-            other = far.copy()
-            other[k] = not far[k]
-            if (value := log(other)) > best:
-                far, best = other, value
-        sd[rules] = np.where(far, 1.0, problem.near[rules])
-        return sd
+    def by_rules(self, sd: np.ndarray) -> float:
+        """Log prior of the rules that hold by standard deviations (nz,): how many do is alike in all of a rig."""
+        rules, near = (self.problem.near < 1).sum(), (sd < 1).sum()
+        return float(betaln(OPEN[0] + rules - near, OPEN[1] + near) - betaln(*OPEN))
 
     def weighed(self, noise: Noise) -> Fit:
         """The fit with a scatter, and its evidence."""
         V, look, residual = noise.covariance + self.known, self.look, self.residual
-        if not look.acting:
-            white = White.of(V)
-            evidence = white.log_density(white(residual)) + noise.log_prior + self._by_rules
-            return Fit(look, noise, evidence, 0.0, np.zeros((self.problem.data.m, 0)))
+        prior = noise.log_prior + self.by_rules(look.sd)
         effects = self._effects()
         rough = _rough(self.problem, effects)
         logs = []
@@ -297,13 +295,8 @@ class _Line:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, *self.prior) + np.log(weight))
-        evidence = float(np.logaddexp.reduce(logs)) + noise.log_prior + self._by_rules - self._short(noise)
+        evidence = float(np.logaddexp.reduce(logs)) + prior - self._short(noise)
         return Fit(look, noise, evidence, FORM[int(np.argmax(logs))][0], effects)
-
-    @property
-    def _by_rules(self) -> float:
-        """Log prior of which rules hold."""
-        return float(-np.log(OPEN) * (self.look.sd < 1).sum())
 
     def _effects(self) -> np.ndarray:
         """What each cause does to the data beside the others (m, k): its slope times its size where none can be run."""

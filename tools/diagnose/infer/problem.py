@@ -77,9 +77,8 @@ def priors(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray, np.nda
 
 @dataclass(frozen=True)
 class Look:
-    """The readings at one point of the vector (z, t...), their Jacobian (M, d) and what each campaign shows.
-
-    `sd` (nz,) are the standard deviations of the nuisances: 1, or less where a rule holds.
+    """The readings at one point of the vector (z, t...), their Jacobian (M, d), what each campaign shows, and the
+    standard deviations of the nuisances (nz,): 1, or less where a rule holds.
     """
 
     z: np.ndarray
@@ -97,7 +96,7 @@ class Look:
     @property
     def by_sd(self) -> np.ndarray:
         """The Jacobian by one standard deviation of each nuisance (M, d)."""
-        return self.jacobian * np.r_[self.sd, np.ones(self.jacobian.shape[1] - len(self.sd))]
+        return np.asarray(self.jacobian * np.r_[self.sd, np.ones(self.jacobian.shape[1] - len(self.sd))])
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import count
 
 import numpy as np
@@ -106,14 +106,11 @@ def _any(codes: np.ndarray, members: Sequence[int]) -> np.ndarray:
 
 
 class Whitened:
-    """All terms in the units of one scatter; `plain` is the same by its scales alone, where it has more."""
+    """All terms in the units of one scatter."""
 
-    def __init__(self, table: Table, scatter: Scatter, plain: Whitened | None = None) -> None:
-        self.table, self.scatter, self.plain, linear = table, scatter, plain, table.linear
-        columns = linear.sized(scatter.beside)
-        base = plain.covariance if plain else linear.covariance(scatter.scales)
-        self.covariance: np.ndarray = base + columns @ columns.T
-        self.white = White.of(self.covariance)
+    def __init__(self, table: Table, scatter: Scatter) -> None:
+        self.table, self.scatter, linear = table, scatter, table.linear
+        self.white = White.of(linear.covariance(scatter.scales, scatter.beside))
         self.e = self.white(linear.residual)
         #: Log density of the residual without any size.
         self.log = self.white.log_density(self.e) + linear.at(scatter.scales).log_prior
@@ -231,7 +228,7 @@ class Whitened:
         groups = [table.kinds[k] or table.families[k] for k in own.members]
         left = [tuple(k for k, group in enumerate(groups) if group != gone) for gone in ("", *groups)]
         for beside in (sides, *(tuple(b for b in sides if b is not a) for a in sides)):
-            near = self if beside == sides else Whitened(table, Scatter(self.scatter.scales, beside), self.plain)
+            near = self if beside == sides else Whitened(table, Scatter(self.scatter.scales, beside))
             for kept in dict.fromkeys([*(left if near is self else left[:1]), ()]):
                 base = near.scored([own.members[k] for k in kept], [own.widths[k] for k in kept])
                 yield base.log, near.scatter, base
@@ -241,31 +238,23 @@ class Whitened:
     @cached_property
     def scattering(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Of scatters that the table has together: products of whitened columns (k, c, c), with the residual (k, c)."""
-        if self.plain is not None:
-            turned, b, _ = self.plain.beside(self.scatter.beside)
-            back = self.plain.white.turned(turned).T
-            return [self.plain._left(group, back, b) for group in range(len(self.table.scatters))]
         found = []
         for numbers, _, columns in self.table.scatters:
             C = np.ascontiguousarray(self.white(columns).reshape(len(self.e), len(numbers), -1).swapaxes(0, 1))
             found.append((C.swapaxes(1, 2) @ C, self.e @ C))
         return found
 
-    def _left(self, group: int, back: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same of one group beside terms: what ties columns to them (j, M), and what they explain (j,)."""
-        products, along = self.scattering[group]
-        tie = (back @ self.table.scatters[group][2]).reshape(len(back), *along.shape).swapaxes(0, 1)
-        return products - tie.swapaxes(1, 2) @ tie, along - b @ tie
-
     def _further(self, own: TermSet, least: float) -> Iterator[tuple[float, Scatter, TermSet]]:
         """One more scatter beside a set in this one, at its likeliest width: log joint density, scatter, the set."""
         turned, b, _ = self.beside(own.sized)
         back, left = self.white.turned(turned).T, self.e @ self.e - b @ b
         logs = own.log + self.table.log_priors(own.terms) - self.table.log_prior(own.terms)
-        for group, (numbers, widths, _) in enumerate(self.table.scatters):
+        for group, (numbers, widths, columns) in enumerate(self.table.scatters):
             if not np.isfinite(logs[numbers]).any():
                 continue
-            products, along = self._left(group, back, b)
+            products, along = self.scattering[group]
+            tie = (back @ columns).reshape(len(back), *along.shape).swapaxes(0, 1)
+            products, along = products - tie.swapaxes(1, 2) @ tie, along - b @ tie
             k, c = along.shape
             inner = np.full((k, c + 1, c + 1), left)  # of columns and residual
             inner[:, :c, :c], inner[:, c, :c] = products, along
@@ -293,10 +282,6 @@ def search(
     queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]]
     queue = [(-np.inf, next(number), own, ()) for own in begun]
 
-    @lru_cache(maxsize=1)  # scatters that follow each other mostly have the same scales
-    def plain(scales: tuple[float, ...]) -> Whitened:
-        return Whitened(table, Scatter(scales))
-
     while queue and later < scatters:
         promise, _, scatter, starts = heapq.heappop(queue)
         if -promise < best - WINDOW or scatter.alike in seen:
@@ -307,8 +292,7 @@ def search(
                 continue
             seen.add(other.alike)
             scatter = other
-        alone = plain(scatter.scales)
-        white = Whitened(table, scatter, alone) if scatter.beside else alone
+        white = Whitened(table, scatter)
         sets = white.search(starts, LOOKS[bool(starts)])
         for s in sets:
             if s.terms not in found or found[s.terms].log < s.log:

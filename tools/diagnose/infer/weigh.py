@@ -33,11 +33,9 @@ WITHIN = 8.0
 #: Causes fitted alone where the rig is calibrated, and where the file has it: a large effect bends, and its cause may
 #: explain more than it promises to first order.
 ALONE = (4, 10)
-#: Share of what the best form of such a cause promises from which others of its forms are fitted, too.
-SHARE = 0.8
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
-#: p of any cause above which nothing more is fitted, where none leads: it does not know what scatters.
+#: p of any cause above which nothing more is fitted, where none leads and no rule fails: it knows no scatter beside.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
 QUICK = 3
@@ -96,7 +94,7 @@ class Weighing:
         self.hypotheses: dict[Key, Hypothesis] = {}
         self.exchanged = set[Key]()
         self.progress("calibrating without a cause", 0.02)
-        null = fitted(problem, (), np.zeros(problem.nz))
+        null = self._calibrated(problem, np.zeros(problem.nz))
         self.progress("effects of all causes", 0.1)
         first = self.screened(null, problem)
         self.critical = FIRST
@@ -105,10 +103,15 @@ class Weighing:
             leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
             self.problem = problem.without(problem.aside | self.linear.aside(leader))
         if self.problem.aside != problem.aside:
-            self.null = fitted(self.problem, (), null.look.z)
+            self.null = self._calibrated(self.problem, null.look.z)
             self.first = self.screened(self.null, self.problem)
         self._ask_alarm()
         self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
+
+    def _calibrated(self, problem: Problem, z: np.ndarray) -> Fit:
+        """The likelier fit without a cause of those that begin where all rules hold, and where none does."""
+        sides = {False, bool((problem.near < 1).any())}
+        return max((fitted(problem, (), z, None, near) for near in sides), key=lambda fit: fit.evidence)
 
     def _ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
@@ -129,14 +132,16 @@ class Weighing:
     def run(self) -> Found:
         """Everything."""
         for k in range(LOOKS):
-            if k and self.p_any > QUIET and not self.leader().causes:
+            if k > (self.null.look.sd > self.problem.near).any() and self.p_any > QUIET and not self.leader().causes:
                 break
             best = self.leader().fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else self.screened(near, self.problem)
-                if k < len(ALONE):
-                    self._fit_alone(near, look, ALONE[k])
+                for start, logs in (
+                    self._promising(look, set(), ALONE[k], self.options.wanted) if k < len(ALONE) else ()
+                ):
+                    self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
@@ -190,11 +195,6 @@ class Weighing:
             starts = [Scatter(tuple(leader.fit.noise.scales.tolist()), beside)]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
-    def _fit_alone(self, near: Fit, look: Screen, n: int) -> None:
-        """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
-        for start, logs in self._promising(look, set(), n, self.options.wanted, SHARE if near is self.null else 1.0):
-            self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
-
     def _fit_joined(self, near: Fit, problem: Problem, start: Start, extras: tuple[Extra, ...], forms: Forms) -> None:
         """Fits a cause joined to what acts in a fit, beside what scatters."""
         z, kept = near.moved(problem, start.effect)
@@ -202,11 +202,11 @@ class Weighing:
             self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
 
     def _promising(
-        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = (), share: float = 1.0
+        self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
     ) -> Iterator[tuple[Start, dict[str, float]]]:
         """Where fits of the n causes begin that promise most, and of those wanted, with log weights of their forms.
 
-        Causes that are taken, by name or family, are left out. Of each also the forms that promise a share of its best.
+        Causes that are taken, by name or family, are left out.
         """
         log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
@@ -216,10 +216,7 @@ class Weighing:
                 best.setdefault(self.formulas[k].cause.id, int(k))
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
-            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
-            for i in own:
-                if i == k or value[i] > share * value[k] > 0:
-                    yield look.start(i), logs
+            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
 
     def _exchange(self) -> None:
         """Fits the leading set without each of what acts in it, and with what promises most in its place.

@@ -149,6 +149,10 @@ class Formula:
         return value[:, :, 0], by_t, by_other
 
 
+#: Forms that act, each with its parameters.
+Parts = Sequence[tuple[Formula, np.ndarray]]
+
+
 class _Rows:
     """A function at n rows a call, without copies on the way.
 

@@ -14,7 +14,7 @@ from ....scenarios.nuisances import Nuisance
 from ..library.knobs import Knob
 from .curves import Curves
 from .entries import Entries, Seen
-from .formula import Formula
+from .formula import Parts
 from .logs import Quadratics
 from .observe import Observed
 from .plant import Plant
@@ -56,7 +56,7 @@ class Logged(Observed):
         none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
         self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 
-    def moves(self, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
+    def moves(self, parts: Parts) -> np.ndarray:
         """How far causes move the knobs in each span (n, k)."""
         found = np.zeros((self.campaign.n, len(self.root)))
         for formula, t in parts:
@@ -65,7 +65,7 @@ class Logged(Observed):
                 found[:, self.place[name]] += moved
         return found
 
-    def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
+    def at(self, z: np.ndarray, parts: Parts) -> Seen:
         """The entries and their derivatives; as for any campaign."""
         does, slope = self.curves.at(self.moves(parts))
         by = [self.by @ self.root, np.zeros((self.m, 1))]
@@ -79,18 +79,13 @@ class Logged(Observed):
         shown = (self.by * (self.root @ z[:-1] + does)[self.row]).sum(axis=1)
         return Seen(shown, np.concatenate(by, axis=1), np.zeros((self.m, len(self.given), self.height)))
 
-    def tangents(
-        self,
-        z: np.ndarray,
-        parts: Sequence[tuple[Formula, np.ndarray]],
-        candidates: Sequence[tuple[Formula, np.ndarray]],
-    ) -> np.ndarray:
+    def tangents(self, z: np.ndarray, parts: Parts, candidates: Parts) -> np.ndarray:
         """First-order effects (m, k) of the sizes of candidates."""
         begin = len(z)
         effects = [self.at(z, [(formula, np.r_[0.0, t[1:]])]).by[:, begin] for formula, t in candidates]
         return np.array(effects).reshape(len(effects), self.m).T
 
-    def shown_by(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
+    def shown_by(self, z: np.ndarray, parts: Parts) -> np.ndarray:
         """What the spans show (m,)."""
         return self.at(z, parts).shown
 

@@ -27,8 +27,8 @@ OIL_BESIDE_REFERENCE = 0.25
 LAW = 0.15
 #: The same of what rules give: against SKF's, bearings after Palmgren have .5; seals of ISO/TR 14179-2 .25.
 ROUGH_LAW = 0.5
-#: Share of an instrument's tolerance by which it drifts from one campaign to the next: it is zeroed, or put back.
-DRIFT = 0.5
+#: Share of the tolerance by which an instrument drifts from one campaign to the next; of torques, zeroed anew.
+DRIFT = (0.2, 0.5)
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
 PLACEMENT_ERROR = 0.08
 #: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
@@ -187,8 +187,9 @@ def terms(
     found += [Term(f"readings of {name}", columns, loose=INPUT) for name, columns in given.items()]
     fixed = [(s.name, k, np.where(o.entries.sensor == i, s.offset_sd, 0.0)[:, None]) for k, o, i, s in each]
     fixed += [(n, k, c[:, None]) for k, (o, s) in pairs for n, c in given_tolerance(o, s)]
-    whole = {name: (columns.sum(axis=1), columns) for name, columns in by_name(fixed, sizes).items()}
-    found += [Term(f"tolerance of {n}", np.column_stack([all_, DRIFT * each])) for n, (all_, each) in whole.items()]
+    torques = {s.name for s in campaigns[0].campaign.sensors if s.kind == "torque"}
+    for name, own in by_name(fixed, sizes).items():
+        found.append(Term(f"tolerance of {name}", np.column_stack([own.sum(axis=1), DRIFT[name in torques] * own])))
     days = [(k, day_sd * per_group(s.by[:, len(sd)], o.campaign.test[o.row])) for k, (o, s) in pairs]
     found.append(Term("days", own := stacked(days, sizes), loose=DAY, passing=own))
     found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
@@ -220,9 +221,7 @@ def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
 
 
 def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], sd: np.ndarray, points: int) -> np.ndarray:
-    """Effects (M, k) of losses and heat paths that follow the point a little otherwise than their laws say.
-
-    Columns of one nuisance stand together.
+    """Effects (M, k), by nuisance, of losses and heat paths that follow the point otherwise than their laws say.
 
     With a healthy campaign of the same rig the remainder says it.
     """

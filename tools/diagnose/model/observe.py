@@ -12,7 +12,7 @@ import numpy as np
 from ....scenarios.measured.table import Campaign
 from ....scenarios.nuisances import Nuisance
 from .entries import Measured, Seen
-from .formula import Formula
+from .formula import Formula, Parts
 from .march import Marched, Phases, duty, march
 from .plant import Plant
 
@@ -129,7 +129,7 @@ class Observed(Measured):
         start = np.where(np.isfinite(c.T_start), c.T_start, begun + c.start_by_room)
         return replace(phases, u0=u0, u1=u1), start
 
-    def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
+    def at(self, z: np.ndarray, parts: Parts) -> Seen:
         """Readings and derivatives.
 
         Args:
@@ -145,16 +145,11 @@ class Observed(Measured):
         """All that the plant shows in each row as its file has it (n, shown), NaN where it cannot be run."""
         return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()[: self.campaign.n]
 
-    def tangents(
-        self,
-        z: np.ndarray,
-        parts: Sequence[tuple[Formula, np.ndarray]],
-        candidates: Sequence[tuple[Formula, np.ndarray]],
-    ) -> np.ndarray:
+    def tangents(self, z: np.ndarray, parts: Parts, candidates: Parts) -> np.ndarray:
         """First-order effects (m, k) of the sizes of candidates beside causes that act, each alone, at size zero."""
         return _Look(self, z, parts, candidates).tangents()
 
-    def shown_by(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
+    def shown_by(self, z: np.ndarray, parts: Parts) -> np.ndarray:
         """Readings (m,) only."""
         return _Look(self, z, parts).shown()
 
@@ -164,13 +159,7 @@ class _Look:
     then the size of each candidate. Slopes hold those that are not zero: direction -> one of each row (n,).
     """
 
-    def __init__(
-        self,
-        o: Observed,
-        z: np.ndarray,
-        parts: Sequence[tuple[Formula, np.ndarray]],
-        candidates: Sequence[tuple[Formula, np.ndarray]] = (),
-    ) -> None:
+    def __init__(self, o: Observed, z: np.ndarray, parts: Parts, candidates: Parts = ()) -> None:
         self.o, self.z, self.parts, self.candidates = o, z, parts, candidates
         self.n = o.campaign.n
         self.values: dict[str, np.ndarray] = {}
@@ -196,11 +185,9 @@ class _Look:
     def _nuisances(self) -> None:
         for k, nuisance in enumerate(self.o.nuisances):
             for path, exponent in nuisance.paths.items():
-                q, rate = self.o.plant.flat.parameters[self.o.plant.place[path]], exponent * nuisance.sd
-                wanted = self._base(path) * (factor := np.exp(rate * self.z[k]))
-                self.values[path] = np.clip(wanted, q.low, q.high)  # several nuisances may move it
-                held = 1.0 * np.isclose(wanted, self.values[path], rtol=1e-9, atol=0.0)
-                self.slopes[path] = total([(factor * held, self.slopes.get(path, {})), (rate * held, {k: wanted})])
+                rate = exponent * nuisance.sd
+                self.values[path] = self._base(path) * (factor := np.exp(rate * self.z[k]))
+                self.slopes[path] = total([(factor, self.slopes.get(path, {})), (rate, {k: self.values[path]})])
 
     def _base(self, path: str) -> np.ndarray:
         return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]

@@ -206,8 +206,8 @@ def values(found: Found, z: np.ndarray) -> dict[str, float]:
     plant, told = found.problem.data.plant, dict[str, float]()
     for nuisance, change in zip(found.problem.data.nuisances, z, strict=False):
         for path, exponent in nuisance.paths.items():
-            q, before = plant.flat.parameters[plant.place[path]], told.get(path, float(plant.p[plant.place[path]]))
-            told[path] = float(np.clip(before * np.exp(exponent * nuisance.sd * change), q.low, q.high))
+            before = told.get(path, float(plant.p[plant.place[path]]))
+            told[path] = before * float(np.exp(exponent * nuisance.sd * change))
     return told
 
 

@@ -221,7 +221,7 @@ SECTIONS = {
 def predictions_text(findings: Findings) -> str:
     """CSV text, a row a point: what each channel will show, calibrated without a cause and with the causes."""
     names = dict.fromkeys(name for p in findings.predictions for name in p.nominal)
-    ends = {c.name: ENDINGS[c.unit][0] for c in findings.channels if c.unit in ENDINGS}
+    ends = {c.name: ENDINGS[c.unit] for c in findings.channels if c.unit in ENDINGS}
     columns = [f"{name}_{model}{ends.get(name, '')}" for name in names for model in ("nominal", "extended")]
     lines = [",".join(map(cell_text, ["point", *columns]))]
     for p in findings.predictions:
