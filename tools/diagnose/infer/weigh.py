@@ -35,7 +35,7 @@ WITHIN = 8.0
 ALONE = (4, 10)
 #: Causes that are fitted in place of one of the leading set.
 EXCHANGED = 4
-#: p of any cause above which nothing more is fitted, where none leads and no rule fails: it knows no scatter beside.
+#: p of any cause above which nothing more is fitted, where none leads and no rule fails; of scatters it says nothing.
 QUIET = 0.3
 #: Scatters looked at for gross readings.
 QUICK = 3
@@ -138,10 +138,9 @@ class Weighing:
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else self.screened(near, self.problem)
-                for start, logs in (
-                    self._promising(look, set(), ALONE[k], self.options.wanted) if k < len(ALONE) else ()
-                ):
-                    self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
+                if k < len(ALONE):
+                    for start, logs in self._promising(look, set(), ALONE[k], self.options.wanted):
+                        self._fit_joined(near, self.problem, start, (), {start.acting.id: logs})
                 found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k:
