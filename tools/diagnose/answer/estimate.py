@@ -180,7 +180,7 @@ def impacts(
     if not moved:
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
-    change = (fit.look.shown - problem.shown(fit.look.z, without))[problem.own]
+    change = (fit.look.shown - problem.shown(fit.look, without))[problem.own]
     spans = zip(Vector(problem, fit.look).sizes, fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
     covariance, jacobian = posterior(problem, h)[1][np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
@@ -263,7 +263,7 @@ def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Pla
     wrong = {name for a in acting for name in a.formula.read}
     if not machine:
         return {}
-    extended = problem.shown(h.fit.look.z, machine)[own]
+    extended = problem.shown(h.fit.look, machine)[own]
     found = {}
     for i, s in enumerate(o.read):
         rows = np.setdiff1d(np.flatnonzero(o.kind == i), problem.entries_aside)

@@ -161,7 +161,7 @@ class _Left:
     def by(self, fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
         """By what lasts, and by what passes with a test or mounting, too (2, k)."""
         own = [Extra(self.terms[e.of.label], e.size) for e in extras if e.of.label in self.terms]
-        look = self.problem.look(fit.look.z, fit.look.acting, fit.look.sd)
+        look = self.problem.look(fit.look.z, fit.look.acting, fit.look.sd, fit.look.laws)
         noise = self.problem.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
         S = noise.covariance + look.jacobian / Vector(self.problem, look).precision @ look.jacobian.T
         r = self.problem.measured - look.shown + look.jacobian @ look.x

@@ -74,7 +74,7 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     made = []
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
-        effect = (fit.look.shown - problem.shown(fit.look.z, others))[problem.own]
+        effect = (fit.look.shown - problem.shown(fit.look, others))[problem.own]
         ends = np.unique(o.kind[o.kind < len(o.read)])
         best = max((int(i) for i in ends), key=lambda i: float(np.mean((effect / sd)[o.kind == i] ** 2)))
         sensor, lines = o.read[best], o.over_rows(best, left + effect, left)

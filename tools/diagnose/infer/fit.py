@@ -12,7 +12,7 @@ from scipy.optimize import lsq_linear
 from scipy.special import betaln
 
 from ....model.errors import SolveError
-from ..model.noise import laws
+from ..model.noise import law_shares
 from .evidence import White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem, priors
 
@@ -100,6 +100,23 @@ def _rough(problem: Problem, effects: np.ndarray) -> np.ndarray:
     return rough
 
 
+@dataclass(frozen=True)
+class Begin:
+    """Where a fit begins.
+
+    Args:
+        z: nuisances
+        scales: logarithms of the scales of the loose terms of its scatter; None: as stated
+        laws: what laws leave open, as of `Look`; None: nothing
+        near: whether all rules hold there, or none does
+    """
+
+    z: np.ndarray
+    scales: np.ndarray | None = None
+    laws: np.ndarray | None = None
+    near: bool = False
+
+
 class Vector:
     """The vector of a problem at a look: priors, those of sizes the widest, bounds, longest steps, places."""
 
@@ -145,32 +162,32 @@ class Vector:
         return np.asarray(lsq_linear(root.T, wanted, (low, np.maximum(high, low + 1e-12)), method="bvls").x)
 
 
-def fitted(
-    problem: Problem, acting: Sequence[Acting], z: np.ndarray, scales: np.ndarray | None = None, near: bool = False
-) -> Fit:
+def fitted(problem: Problem, acting: Sequence[Acting], begun: Begin) -> Fit:
     """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 
     Args:
-        acting, z: causes and nuisances where the fit begins
-        scales: logarithms of the scales of its loose terms where it begins
-        near: whether it begins where all rules hold, or where none does
+        acting: its causes where the fit begins
 
     Raises:
         SolveError: the model cannot be run where the fit begins
     """
-    look = _begun(problem, acting, np.clip(z, *problem.data.limits[:, : problem.nz]))
-    line = _Line(problem, look := replace(look, sd=problem.near) if near else look)
-    noise = line.scattered(problem.noise(look, scales))
+    look = _begun(problem, acting, begun)
+    line = _Line(problem, look)
+    noise = line.scattered(problem.noise(look, begun.scales))
     for k in range(ROUNDS):
         before, look = look, _settled(problem, look, noise)
         if k and look is not before:  # what scatters follows the point: whole ways go to and fro
             with suppress(SolveError):
-                look = problem.look(*line.vector.split((before.x + look.x) / 2), look.sd)
+                look = problem.look(*line.vector.split((before.x + look.x) / 2), look.sd, look.laws)
         sd = _Line(problem, look).ruled(noise) if (problem.near < 1).any() else look.sd
         if look is before and np.array_equal(sd, look.sd):
             break
         line = _Line(problem, look := replace(look, sd=sd))
         noise = line.scattered(noise)
+        if problem.by_law.any() and np.abs((laws := line.laws(noise)) - look.laws).max() > LITTLE:
+            with suppress(SolveError):
+                line = _Line(problem, look := problem.look(look.z, look.acting, look.sd, laws))
+                noise = line.scattered(noise)
     return line.weighed(noise)
 
 
@@ -189,7 +206,7 @@ def _settled(problem: Problem, look: Look, noise: Noise) -> Look:
             if damping:
                 change = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
             with suppress(SolveError):
-                trial = problem.look(*vector.split(look.x + change), look.sd)
+                trial = problem.look(*vector.split(look.x + change), look.sd, look.laws)
                 gain = cost - _cost(problem, vector, white, trial)
                 if gain > -1e-9:
                     break
@@ -209,11 +226,14 @@ def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
     return float(change @ gradient - 0.5 * change @ H @ change)
 
 
-def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
+def _begun(problem: Problem, acting: Sequence[Acting], begun: Begin) -> Look:
     """A look where the fit begins, nearer to the file where it cannot be run there."""
+    z = np.clip(begun.z, *problem.data.limits[:, : problem.nz])
+    sd = problem.near if begun.near else None
 
     def at(share: float) -> Look:
-        return problem.look(share * z, [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting])
+        smaller = [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting]
+        return problem.look(share * z, smaller, sd, begun.laws)
 
     for share in (1.0, 0.5, 0.2) if acting else ():
         with suppress(SolveError):
@@ -250,25 +270,31 @@ class _Line:
         """The scatter here with its most likely scales, from those of a scatter."""
         return self.problem.noise(self.look, noise.scales).fitted(self.residual, self.wide)
 
+    def laws(self, noise: Noise) -> np.ndarray:
+        """How far the nuisances of each row are from their laws (nz, n), as the residual tells it."""
+        problem, row = self.problem, self.problem.data.row
+        a = White.of(noise.covariance + self.wide).back(self.residual)
+        by = self.look.jacobian[:, : problem.nz] * law_shares(problem.data, self.look.sd) ** 2
+        return np.asarray((problem.by_law[:, row] @ (by * a[:, None])).T)
+
     def ruled(self, noise: Noise) -> np.ndarray:
         """Standard deviations of the nuisances (nz,): each rule holds where that is likelier beside the others."""
         problem, look, rules = self.problem, self.look, np.flatnonzero(self.problem.near < 1)
+        by_law = problem.by_law[np.ix_(problem.data.row, problem.data.row)]
 
-        def columns(sd: np.ndarray) -> np.ndarray:
-            """Of each rule by its size, and by what its law leaves open (M, k)."""
-            by_law = laws(problem.campaigns, look.seen, sd, 0).reshape(problem.m, problem.nz, -1)
-            whole = np.concatenate([look.jacobian[:, : problem.nz, None] * sd[:, None], by_law], axis=2)
-            return np.asarray(whole[:, rules].reshape(problem.m, -1))
+        def covariances(sd: np.ndarray) -> np.ndarray:
+            """Of each rule, by its size and by what its law leaves open (k, M, M)."""
+            J, shares = look.jacobian[:, rules].T, law_shares(problem.data, sd)[rules]
+            of = sd[rules, None, None] ** 2 + shares[:, None, None] ** 2 * by_law
+            return np.asarray(J[:, :, None] * J[:, None, :] * of)
 
-        now, near, far = map(columns, (look.sd, problem.near, np.ones(problem.nz)))
-        white = White.of(problem.noise(look, noise.scales).covariance + self.wide - now @ now.T)
-        near, far, e = white(near), white(far), white(self.residual)
+        now, near, far = map(covariances, (look.sd, problem.near, np.ones(problem.nz)))
+        rest = problem.noise(look, noise.scales).covariance + self.wide - now.sum(axis=0)
 
         def log(sd: np.ndarray) -> float:
             """Log density, up to a constant."""
-            G = np.where(np.repeat(sd[rules] == 1, near.shape[1] // len(rules)), far, near)
-            S, b = np.eye(len(G.T)) + G.T @ G, G.T @ e
-            return float(0.5 * b @ np.linalg.solve(S, b) - 0.5 * np.linalg.slogdet(S)[1]) + self.by_rules(sd)
+            white = White.of(rest + np.where((sd[rules] == 1)[:, None, None], far, near).sum(axis=0))
+            return white.log_density(white(self.residual)) + self.by_rules(sd)
 
         def climbed(sd: np.ndarray) -> np.ndarray:
             for k in [*rules] * 2:
@@ -303,7 +329,7 @@ class _Line:
         look, own = self.look, self.problem.own
         found = (self.G * look.x[self.vector.sizes])[own]
         for k, a in enumerate(look.acting):
-            without = self.problem.shown(look.z, [b for b in look.acting if b is not a])[own]
+            without = self.problem.shown(look, [b for b in look.acting if b is not a])[own]
             if np.isfinite(without).all():
                 found[:, k] = look.shown[own] - without
         return np.asarray(found)

@@ -14,7 +14,7 @@ import numpy as np
 from ....model.errors import SolveError
 from ..model.entries import Seen, Term, summed
 from ..model.formula import Formula
-from ..model.noise import alike, by_name, input_scatter, terms
+from ..model.noise import alike, by_law, by_name, input_scatter, terms
 from ..model.observe import Observed
 from .evidence import INSTRUMENT, WIDTHS
 from .scales import most_likely
@@ -77,8 +77,13 @@ def priors(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray, np.nda
 
 @dataclass(frozen=True)
 class Look:
-    """The readings at one point of the vector (z, t...), their Jacobian (M, d), what each campaign shows, and the
-    standard deviations of the nuisances (nz,): 1, or less where a rule holds.
+    """The readings at one point of the vector (z, t...), their Jacobian (M, d), and what each campaign shows.
+
+    Args:
+        shown: without what laws leave open, to first order
+        sd: standard deviations of the nuisances (nz,): 1, or less where a rule holds
+        laws: how far the nuisances of each row of the data are from their laws (nz, n)
+        bent: what it does to the readings (M,), to first order
     """
 
     z: np.ndarray
@@ -87,6 +92,8 @@ class Look:
     jacobian: np.ndarray
     seen: tuple[Seen, ...]
     sd: np.ndarray
+    laws: np.ndarray
+    bent: np.ndarray
 
     @property
     def x(self) -> np.ndarray:
@@ -189,6 +196,11 @@ class Problem:
         sensor = self.data.entries.sensor
         return np.asarray(sensor[:, None] == sensor)
 
+    @cached_property
+    def by_law(self) -> np.ndarray:
+        """Covariance of the nuisances by row of the data (n, n), in shares; 0 where a healthy campaign tells them."""
+        return by_law(self.campaigns) * (len(self.campaigns) == 1)
+
     @property
     def m(self) -> int:
         """Number of readings."""
@@ -220,13 +232,23 @@ class Problem:
         vars(found).update(changes)
         return found
 
-    def look(self, z: np.ndarray, acting: Sequence[Acting] = (), sd: np.ndarray | None = None) -> Look:
-        """Readings and Jacobian, beside standard deviations of the nuisances: none of the rules holds if None.
+    def look(
+        self,
+        z: np.ndarray,
+        acting: Sequence[Acting] = (),
+        sd: np.ndarray | None = None,
+        laws: np.ndarray | None = None,
+    ) -> Look:
+        """Readings and Jacobian, beside standard deviations of the nuisances and what laws leave open.
+
+        If None, no rule holds, and all is as the laws say.
 
         Raises:
             SolveError: the model cannot be run there
         """
-        whole, seen = np.append(z, 0.0), []
+        sd = np.ones(self.nz) if sd is None else sd
+        laws = np.zeros((self.nz, self.data.campaign.n)) if laws is None else laws
+        whole, seen, bent = self._whole(z, laws), [], np.zeros(self.m)
         blocks = np.zeros((self.m, self.nz + sum(a.formula.size for a in acting)))
         begin = 0
         for o in self.campaigns:
@@ -237,19 +259,27 @@ class Problem:
                     f"{o.campaign.name}: the rig cannot be run at row {bad[0] + 1}. Check row and rig file."
                 )
             part = slice(begin, begin + o.m)
+            if laws.any():
+                bent[part] = (found.by[:, : self.nz] * laws.T[o.row]).sum(axis=1)
+                found = replace(found, shown=found.shown - bent[part])
             blocks[part, : self.nz] = found.by[:, : self.nz]
             if own:
                 blocks[part, self.nz :] = found.by[:, self.nz + 1 :]
             seen.append(found)
             begin += o.m
-        sd = np.ones(self.nz) if sd is None else sd
-        return Look(np.array(z), tuple(acting), np.concatenate([s.shown for s in seen]), blocks, tuple(seen), sd)
+        shown = np.concatenate([s.shown for s in seen])
+        return Look(np.array(z), tuple(acting), shown, blocks, tuple(seen), sd, laws, bent)
 
-    def shown(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> np.ndarray:
-        """Readings (M,), NaN where the model cannot be run."""
-        whole = np.append(z, 0.0)
-        parts = [(a.formula, a.t) for a in acting]
-        return np.concatenate([o.shown_by(whole, parts if o is self.data else []) for o in self.campaigns])
+    @staticmethod
+    def _whole(z: np.ndarray, laws: np.ndarray) -> np.ndarray:
+        """Nuisances with the cooling of a day: of all rows (nz + 1,), or of each where they are not as laws say."""
+        return np.append(z[:, None] + laws, np.zeros((1, laws.shape[1])), axis=0) if laws.any() else np.append(z, 0.0)
+
+    def shown(self, look: Look, acting: Sequence[Acting]) -> np.ndarray:
+        """Readings (M,) with other causes than those of a look, NaN where the model cannot be run."""
+        whole, parts = self._whole(look.z, look.laws), [(a.formula, a.t) for a in acting]
+        shown = [o.shown_by(whole, parts if o is self.data else []) for o in self.campaigns]
+        return np.asarray(np.concatenate(shown) - look.bent)
 
     def noise(self, look: Look, scales: np.ndarray | None = None) -> Noise:
         """The scatter at a look."""
@@ -284,12 +314,12 @@ class Problem:
         o, number = self.campaigns[k], aside.number - sum(sizes[:k])
         return o, number, aside.sensor or o.read[o.kind[number]].name
 
-    def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
+    def tangents(self, look: Look, candidates: Sequence[Acting]) -> np.ndarray:
         """Effects (M, k) of one prior half width of each candidate beside what acts.
 
         To first order at size zero; of a candidate with a size, the secant up to there.
         """
-        whole, parts = np.append(z, 0.0), [(a.formula, a.t) for a in acting]
+        whole, parts = self._whole(look.z, look.laws), [(a.formula, a.t) for a in look.acting]
         tried = [(c.formula, c.t) for c in candidates]
         effects = self.data.tangents(whole, parts, tried)
         if far := [k for k, (_, t) in enumerate(tried) if t[0]]:

@@ -150,7 +150,7 @@ def spread(n: int, d: int) -> np.ndarray:
 def screened(problem: Problem, near: Look, linear: tuple[White, np.ndarray], forms: Sequence[Formula]) -> Screen:
     """What every form would explain near a fitted hypothesis: in a whitening by all that is uncertain there."""
     candidates, owner = samples(tuple(forms), changes(problem))
-    effects = problem.tangents(near.z, near.acting, candidates)
+    effects = problem.tangents(near, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return Screen.of(candidates, owner, effects, linear)
 

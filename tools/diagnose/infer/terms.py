@@ -80,7 +80,7 @@ def spreads(problem: Problem, look: Look, formulas: Sequence[Formula], prior: Pr
     if not formulas:
         return
     own = [Acting(f, np.r_[f.paced * PACES[-1], np.zeros(f.size - 1)]) for f in formulas]
-    effects = problem.tangents(look.z, look.acting, own)
+    effects = problem.tangents(look, own)
     for formula, effect in zip(formulas, effects.T, strict=True):
         columns, passing = _columns(problem, formula, effect)
         if np.count_nonzero(columns, axis=0).max() < 2 or not np.isfinite(columns).all():

@@ -17,7 +17,7 @@ from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import sets
 from .evidence import White
-from .fit import Fit, fitted
+from .fit import Begin, Fit, fitted
 from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
@@ -111,7 +111,7 @@ class Weighing:
     def _calibrated(self, problem: Problem, z: np.ndarray) -> Fit:
         """The likelier fit without a cause of those that begin where all rules hold, and where none does."""
         sides = {False, bool((problem.near < 1).any())}
-        return max((fitted(problem, (), z, None, near) for near in sides), key=lambda fit: fit.evidence)
+        return max((fitted(problem, (), Begin(z, near=near)) for near in sides), key=lambda fit: fit.evidence)
 
     def _ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
@@ -165,7 +165,7 @@ class Weighing:
         """
         z, campaigns = np.zeros(self.problem.nz), self.problem.campaigns
         if len(campaigns) > 1:
-            z = fitted(Problem(campaigns[1:], self.problem.day_sd), (), z).look.z
+            z = fitted(Problem(campaigns[1:], self.problem.day_sd), (), Begin(z)).look.z
         look = self.problem.look(z, (), self.problem.near)
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
@@ -198,7 +198,8 @@ class Weighing:
         """Fits a cause joined to what acts in a fit, beside what scatters."""
         z, kept = near.moved(problem, start.effect)
         with suppress(SolveError):
-            self._fit_exactly(problem, [*kept, start.acting], z, near.noise.scales, extras, forms)
+            begun = Begin(z, near.noise.scales, near.look.laws)
+            self._fit_exactly(problem, [*kept, start.acting], begun, extras, forms)
 
     def _promising(
         self, look: Screen, taken: Set[str], n: int, wanted: Collection[str] = ()
@@ -245,7 +246,8 @@ class Weighing:
         rest, problem = [a for a in fit.look.acting if a is not gone], self._beside(key[2], extras)
         with suppress(SolveError):
             forms = {b.id: known.forms.get(b.id, {}) for b in rest}
-            near = self._fit_exactly(problem, rest, fit.look.z, fit.noise.scales, extras, forms) if gone else fit
+            begun = Begin(fit.look.z, fit.noise.scales, fit.look.laws)
+            near = self._fit_exactly(problem, rest, begun, extras, forms) if gone else fit
             taken = {*known.causes, *(b.formula.cause.family for b in rest)}
             for start, logs in self._promising(look.beside(near.linear(problem)), taken, EXCHANGED):
                 self._fit_joined(near, problem, start, extras, forms | {start.acting.id: logs})
@@ -298,15 +300,15 @@ class Weighing:
         begun = zip(s.members, t, strict=True)
         acting = [one.started(size) for k, size in begun if (one := terms[k].acting) is not None]
         extras = tuple(Extra(terms[k], width) for k, width in s.scatter.beside)
+        start = Begin(z, np.array(s.scatter.scales), near.look.laws)
         with suppress(SolveError):
-            self._fit_exactly(self._beside(own.key[2], extras), acting, z, np.array(s.scatter.scales), extras, forms)
+            self._fit_exactly(self._beside(own.key[2], extras), acting, start, extras, forms)
 
     def _fit_exactly(
         self,
         problem: Problem,
         acting: Sequence[Acting],
-        z: np.ndarray,
-        scales: np.ndarray,
+        begun: Begin,
         extras: tuple[Extra, ...],
         forms: Forms,
     ) -> Fit:
@@ -316,7 +318,7 @@ class Weighing:
             SolveError: the model cannot be run there
         """
         key = frozenset(a.formula for a in acting), frozenset(e.of.label for e in extras), problem.aside
-        fit = fitted(problem, acting, z, scales)
+        fit = fitted(problem, acting, begun)
         self._keep(key, fit, extras, forms)
         return fit
 

@@ -133,7 +133,7 @@ class Observed(Measured):
         """Readings and derivatives.
 
         Args:
-            z: nuisances, in standard deviations
+            z: nuisances, in standard deviations (k,), or of each row (k, n)
             parts: causes that act, each with its parameters
 
         Returns:
