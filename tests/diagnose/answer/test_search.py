@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.fit import Begin, fitted
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Acting
@@ -18,7 +18,7 @@ def test_the_right_cause_takes_the_place_of_a_wrong_one_in_a_set(wrong: tuple[Se
     own.hypotheses.clear()  # a fit without a cause would lead the pair
     formulas = [next(f for f in own.formulas if f.cause.id == cause) for cause in pair]
     acting = [Acting(f, np.r_[0.2, np.zeros(f.size - 1)]) for f in formulas]
-    fit = fitted(found.problem, acting, own.null.look.z)
+    fit = fitted(found.problem, acting, Begin(own.null.look.z))
     own._keep((frozenset(formulas), frozenset(), found.problem.aside), fit, (), {})
     assert own.leader().causes == pair
     own._exchange()

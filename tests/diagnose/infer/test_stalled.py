@@ -25,12 +25,12 @@ class Turning:
     alike, same, near = np.ones((5, 5)), np.eye(5), np.ones(1)
     measured = 4.0 * BY_T
 
-    def shown(self, z: np.ndarray, acting: tuple[Acting, ...]) -> np.ndarray:
+    def shown(self, look: Any, acting: tuple[Acting, ...]) -> np.ndarray:
         t = acting[0].t[0] if acting else 0.0
-        return np.asarray(BY_Z * z[0] + BY_T * t * np.exp(-0.5 * (t / TURNS) ** 2))
+        return np.asarray(BY_Z * look.z[0] + BY_T * t * np.exp(-0.5 * (t / TURNS) ** 2))
 
     def cost(self, x: np.ndarray) -> float:
-        e = self.measured - self.shown(x[:1], (Acting(FORMULA, x[1:]),))
+        e = self.measured - self.shown(SimpleNamespace(z=x[:1]), (Acting(FORMULA, x[1:]),))
         return float(0.5 * e @ e + 0.5 * x[0] ** 2 + 0.5 * (x[1] / WIDTHS[-1]) ** 2)
 
 
@@ -39,8 +39,8 @@ def stalled(problem: Any) -> fit.Fit:
     acting = (Acting(FORMULA, x[1:]),)
     slope = (1 - (x[1] / TURNS) ** 2) * np.exp(-0.5 * (x[1] / TURNS) ** 2)
     J = np.column_stack([BY_Z, BY_T * slope])
-    look = SimpleNamespace(z=x[:1], acting=acting, shown=problem.shown(x[:1], acting), jacobian=J, x=x)
-    look.by_sd, look.sd = J, np.ones(1)
+    look = SimpleNamespace(z=x[:1], acting=acting, jacobian=J, x=x, by_sd=J, sd=np.ones(1))
+    look.shown = problem.shown(look, acting)
     return _Line(problem, look).weighed(NOISE)  # type: ignore[arg-type]
 
 
@@ -60,7 +60,7 @@ def test_evidence_lacks_what_the_slopes_promise(monkeypatch: pytest.MonkeyPatch)
 def test_what_a_cause_does_is_no_slope_times_its_size() -> None:
     problem: Any = Turning()
     found = stalled(problem)
-    alone = problem.shown(found.look.z, found.look.acting) - problem.shown(found.look.z, ())
+    alone = problem.shown(found.look, found.look.acting) - problem.shown(found.look, ())
     assert found.effects == pytest.approx(alone[:, None])
     slope = found.look.jacobian[:, 1] * found.look.x[1]
     assert np.linalg.norm(slope) < 0.5 * np.linalg.norm(alone)

@@ -12,7 +12,7 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import PLACES, Campaign, Course, Series
-from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.fit import Begin, fitted
 from gearheat.tools.diagnose.infer.problem import Problem
 from gearheat.tools.diagnose.infer.screen import screened
 from gearheat.tools.diagnose.model import march
@@ -78,7 +78,7 @@ def measured(prepared: Setting):
 def log_bf(s: Setting, campaign: Campaign) -> dict[str, float]:
     """Log Bayes factor of the best form of each cause at the first look."""
     problem = Problem([observed(s, campaign)], 0.015)
-    null = fitted(problem, (), np.zeros(problem.nz))
+    null = fitted(problem, (), Begin(np.zeros(problem.nz)))
     found = screened(problem, null.look, null.linear(problem), s.formulas).by_form(len(s.formulas))
     best: dict[str, float] = {}
     for f, log in zip(s.formulas, found, strict=True):

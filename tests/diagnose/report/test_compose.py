@@ -14,7 +14,7 @@ from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
 from gearheat.tools.diagnose.answer.evidence import RepeatedPoint
 from gearheat.tools.diagnose.answer.quality import list_repeats
-from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.fit import Begin, fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Acting
@@ -46,10 +46,10 @@ def made() -> Made:
     inputs = read(request)
     assert inputs.data is not None
     made = setting(inputs.scenario, inputs.card, inputs.data)
-    null = fitted(made.problem, (), np.zeros(made.problem.nz))
+    null = fitted(made.problem, (), Begin(np.zeros(made.problem.nz)))
     formula = next(f for f in made.formulas if f.cause.id == CAUSE)
     start = Acting(formula, np.r_[0.5, np.zeros(formula.size - 1)])
-    fit = fitted(made.problem, [start], null.look.z, null.noise.scales)
+    fit = fitted(made.problem, [start], Begin(null.look.z, null.noise.scales))
     h = Hypothesis((CAUSE,), fit, 0.0)
     nothing = Hypothesis((), null, -3.0)
     chances = np.array([0.9, 0.1])
