@@ -39,7 +39,7 @@ CENTRES = tuple(m * 10**k for k in (1, 2, 3) for m in R_20)
 #: Usual helix angles [rad].
 HELIX = (math.radians(8.0), math.radians(20.0))
 #: How close to a ratio is close enough for a stage [1]: to torques at both ends, one that is off is a loss.
-CLOSE = 0.001
+CLOSE = 0.0005
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 
