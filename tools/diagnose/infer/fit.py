@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
-from scipy.special import betaln
 
 from ....model.errors import SolveError
 from ..model.noise import law_shares
@@ -28,9 +27,9 @@ TRUSTED = 0.7
 ROUNDS = 4
 #: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
 STALLED = 0.5
-#: Counts of rules that are as far from the machine as they leave open, and as near as what else a rig file says, before
-#: any data: of fifteen losses of four units by other laws, three are near.
-OPEN = (1.5, 0.5)
+#: Log odds, a rule, of a machine that is as far from its rules as they leave open against one that is as near as what
+#: else a rig file says.
+OPEN = 1.1
 #: Longest step of a nuisance.
 LONGEST = 1.5
 #: A size (or that share of it).
@@ -108,13 +107,11 @@ class Begin:
         z: nuisances
         scales: logarithms of the scales of the loose terms of its scatter; None: as stated
         laws: what laws leave open, as of `Look`; None: nothing
-        near: whether all rules hold there, or none does
     """
 
     z: np.ndarray
     scales: np.ndarray | None = None
     laws: np.ndarray | None = None
-    near: bool = False
 
 
 class Vector:
@@ -229,11 +226,10 @@ def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
 def _begun(problem: Problem, acting: Sequence[Acting], begun: Begin) -> Look:
     """A look where the fit begins, nearer to the file where it cannot be run there."""
     z = np.clip(begun.z, *problem.data.limits[:, : problem.nz])
-    sd = problem.near if begun.near else None
 
     def at(share: float) -> Look:
         smaller = [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting]
-        return problem.look(share * z, smaller, sd, begun.laws)
+        return problem.look(share * z, smaller, None, begun.laws)
 
     for share in (1.0, 0.5, 0.2) if acting else ():
         with suppress(SolveError):
@@ -278,37 +274,19 @@ class _Line:
         return np.asarray((problem.by_law[:, row] @ (by * a[:, None])).T)
 
     def ruled(self, noise: Noise) -> np.ndarray:
-        """Standard deviations of the nuisances (nz,): each rule holds where that is likelier beside the others."""
-        problem, look, rules = self.problem, self.look, np.flatnonzero(self.problem.near < 1)
-        by_law = problem.by_law[np.ix_(problem.data.row, problem.data.row)]
+        """Standard deviations of the nuisances (nz,) where all rules hold or none does, whichever is likelier."""
+        lines = [_Line(self.problem, replace(self.look, sd=sd)) for sd in (np.ones(self.problem.nz), self.problem.near)]
 
-        def covariances(sd: np.ndarray) -> np.ndarray:
-            """Of each rule, by its size and by what its law leaves open (k, M, M)."""
-            J, shares = look.jacobian[:, rules].T, law_shares(problem.data, sd)[rules]
-            of = sd[rules, None, None] ** 2 + shares[:, None, None] ** 2 * by_law
-            return np.asarray(J[:, :, None] * J[:, None, :] * of)
-
-        now, near, far = map(covariances, (look.sd, problem.near, np.ones(problem.nz)))
-        rest = problem.noise(look, noise.scales).covariance + self.wide - now.sum(axis=0)
-
-        def log(sd: np.ndarray) -> float:
+        def log(line: _Line) -> float:
             """Log density, up to a constant."""
-            white = White.of(rest + np.where((sd[rules] == 1)[:, None, None], far, near).sum(axis=0))
-            return white.log_density(white(self.residual)) + self.by_rules(sd)
+            white = White.of(line.problem.noise(line.look, noise.scales).covariance + line.wide)
+            return white.log_density(white(line.residual)) + line.by_rules(line.look.sd)
 
-        def climbed(sd: np.ndarray) -> np.ndarray:
-            for k in [*rules] * 2:
-                other = sd.copy()
-                other[k] = problem.near[k] if sd[k] == 1 else 1.0
-                sd = max(sd, other, key=log)
-            return sd
-
-        return max(map(climbed, (problem.near, np.ones(problem.nz))), key=log)
+        return max(lines, key=log).look.sd
 
     def by_rules(self, sd: np.ndarray) -> float:
-        """Log prior of the rules that hold by standard deviations (nz,): how many do is alike in all of a rig."""
-        rules, near = (self.problem.near < 1).sum(), (sd < 1).sum()
-        return float(betaln(OPEN[0] + rules - near, OPEN[1] + near) - betaln(*OPEN))
+        """Log prior of whether all rules hold, by standard deviations (nz,)."""
+        return -float(((self.problem.near < 1) & (sd < 1)).sum()) * OPEN
 
     def weighed(self, noise: Noise) -> Fit:
         """The fit with a scatter, and its evidence."""

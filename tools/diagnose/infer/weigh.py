@@ -94,7 +94,7 @@ class Weighing:
         self.hypotheses: dict[Key, Hypothesis] = {}
         self.exchanged = set[Key]()
         self.progress("calibrating without a cause", 0.02)
-        null = self._calibrated(problem, np.zeros(problem.nz))
+        null = fitted(problem, (), Begin(np.zeros(problem.nz)))
         self.progress("effects of all causes", 0.1)
         first = self.screened(null, problem)
         self.critical = FIRST
@@ -103,15 +103,10 @@ class Weighing:
             leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
             self.problem = problem.without(problem.aside | self.linear.aside(leader))
         if self.problem.aside != problem.aside:
-            self.null = self._calibrated(self.problem, null.look.z)
+            self.null = fitted(self.problem, (), Begin(null.look.z))
             self.first = self.screened(self.null, self.problem)
         self._ask_alarm()
         self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
-
-    def _calibrated(self, problem: Problem, z: np.ndarray) -> Fit:
-        """The likelier fit without a cause of those that begin where all rules hold, and where none does."""
-        sides = {False, bool((problem.near < 1).any())}
-        return max((fitted(problem, (), Begin(z, near=near)) for near in sides), key=lambda fit: fit.evidence)
 
     def _ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
