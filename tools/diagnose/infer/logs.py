@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import partial
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from ..library.knobs import Knob, knobs
 from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
-from ..model.logs import Filter, Quadratics
+from ..model.logs import Filter, Quadratics, log_likelihood
 from ..model.plant import Plant
 from ..model.windows import WINDOW, Windows, windows
 from .levels import Levels, estimate, first_levels
@@ -206,14 +205,16 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
         suit(own, data, np.zeros((len(season), len(own.knobs))))
-    span, at = _spans(data.time, season), np.tile(found.at[0], (len(season), 1))
-    if found.share:  # what is not told apart would move along with a change, so the filter stays where it was healthy
-        bent, passed = found.curves, own.run(data, at, progress=partial(progress, "logs in question"))
-    else:
-        own.learns, sd = True, np.array([k.sd for k in found.knobs])
-        wide = levels.covariance[0] + levels.season + np.diag(sd**2)
-        z, passed = walk(own, data, season, (at[0], wide), _pass(progress, "logs in question"))
-        at, bent = z[season], curves(own, data)
+    span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
+    wide = levels.covariance[0] + levels.season + np.diag(sd**2)
+    step, own.learns = _pass(progress, "logs in question"), not found.share
+    z, passed = walk(own, data, season, (found.at[0], wide), step)
+    at, bent = z[season], found.curves if found.share else curves(own, data)
+    if found.share:  # what is not told apart moves along with a change: the filter stays unless the change is large
+        healthy = np.tile(found.at[0], (len(season), 1))
+        still = own.run(data, healthy)
+        if log_likelihood(passed) - log_likelihood(still) < data.counts.sum():
+            at, passed = healthy, still
     told = passed.told(*bent.at(at)).times(found.share or independent(passed))
     moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
     return Question(data, season, span, moves, bent.about(levels.mean[0]))
