@@ -145,7 +145,22 @@ def judged(
     scenario = inputs.scenario
     made = Setting(scenario, scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
-    found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
+    import os
+    for k in range(4):
+        problem = problem_of(known, asked, logs.logs)
+        found = weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p))
+        if asked.moved is None or k == 3:
+            break
+        moves = [_moves(problem.spans, h) for h in found.hypotheses[:20]]
+        tried = list(asked.tried(known, moves))
+        most = max(gain for gain, _ in tried)
+        best = next(n for n, (gain, _) in enumerate(tried) if gain >= most - float(asked.windows.counts.sum()))
+        if os.environ.get("DEBUG"): print(k, [('+'.join(h.causes), round(float(p),2)) for h,p in list(zip(found.hypotheses,found.probabilities))[:3]], 'best', found.hypotheses[best].causes, tried[best][0] / float(asked.windows.counts.sum()))
+        if tried[best][0] < float(os.environ.get("LITTLE","1")) * float(asked.windows.counts.sum()):
+            break
+        asked = asked.anew(known, tried[best][1] * moves[best])
+    made = Setting(scenario, scenario.spec, causes, formulas, problem)
+    found = temper(found)
     decision = decide(found)
     return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs), problem.spans)
 

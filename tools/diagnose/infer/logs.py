@@ -70,6 +70,7 @@ class Fleet:
     at: np.ndarray
     curves: Curves
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
+    off: tuple[np.ndarray, np.ndarray] | None = None
 
     def of(self, machine: int) -> Fleet:
         """The same with one of its machines in question, without its past."""
@@ -166,10 +167,21 @@ def fleet(
     at, passed = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
     bent = curves(own, past)
-    levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
+    told, off = passed.told(*bent.at(at[machine])).times(share), None
+    if (machine == 0).any():
+        does, known = bent.at(at)[0], np.linalg.inv(begun.root + begun.machine)
+        delta, lean = np.zeros_like(does), np.zeros_like(does)
+        for m in np.unique(machine):
+            mine = machine == m
+            H, eta = told.H[mine].sum(axis=0), told.eta[mine].sum(axis=0)
+            delta[m] = np.linalg.solve(H + known, eta - H @ does[m] - known @ does[m])
+            lean[m] = known @ (does[m] + delta[m]) / mine.sum()
+        told = replace(told, eta=told.eta - (told.H @ (does + delta)[machine][:, :, None])[:, :, 0] - lean[machine])
+        off = delta[0], lean[0]
+    levels = estimate(told, season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons, off)
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,6 +201,28 @@ class Question:
     span: np.ndarray
     told: Quadratics
     curves: Curves
+    bias: np.ndarray | None = None
+    likelihood: float = 0.0
+    moved: np.ndarray | None = None
+
+    def anew(self, found: Fleet, moved: np.ndarray) -> Question:
+        at = found.at[0] + moved[self.span]
+        passed = found.filter.run(self.windows, at)
+        told = passed.told(*found.curves.at(at)).times(found.share)
+        does = found.curves.at(found.at[[0]])[0][0]
+        moves = replace(told, eta=told.eta - told.H @ (does + found.levels.mean[0]) - self.bias)
+        return replace(self, told=moves, likelihood=log_likelihood(passed), moved=moved)
+
+    def tried(self, found: Fleet, moves: Sequence[np.ndarray]):
+        some = np.linspace(0, len(self.span) - 1, min(len(self.span), 48)).astype(int)
+        data, span, whole = self.windows.some(some), self.span[some], len(self.span) / len(some)
+
+        def value(move: np.ndarray) -> float:
+            return whole * log_likelihood(found.filter.run(data, found.at[0] + move[span], slopes=False))
+
+        here = value(self.moved)
+        for move in moves:
+            yield max((value(times * move) - here, times) for times in ((1.0, 0.5, 2.0) if move.any() else (1.0,)))
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
@@ -206,6 +240,15 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     if not found.share:
         suit(own, data, np.zeros((len(season), len(own.knobs))))
     span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
+    if found.off:
+        at = np.tile(found.at[0], (len(season), 1))
+        passed = own.run(data, at)
+        told = passed.told(*found.curves.at(at)).times(found.share)
+        does = found.curves.at(found.at[[0]])[0][0]
+        bias = told.H @ found.off[0] + found.off[1]
+        moves = replace(told, eta=told.eta - told.H @ (does + levels.mean[0]) - bias)
+        still = np.zeros((int(span.max()) + 1, at.shape[1]))
+        return Question(data, season, span, moves, found.curves.about(found.at[0]), bias, log_likelihood(passed), still)
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
     z, passed = walk(own, data, season, (found.at[0], wide), step)
