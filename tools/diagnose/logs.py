@@ -156,7 +156,7 @@ def judged(
         most = max(gain for gain, _ in tried)
         best = next(n for n, (gain, _) in enumerate(tried) if gain >= most - float(asked.windows.counts.sum()))
         if os.environ.get("DEBUG"): print(k, [('+'.join(h.causes), round(float(p),2)) for h,p in list(zip(found.hypotheses,found.probabilities))[:3]], 'best', found.hypotheses[best].causes, tried[best][0] / float(asked.windows.counts.sum()))
-        if tried[best][0] < float(os.environ.get("LITTLE","1")) * float(asked.windows.counts.sum()):
+        if tried[best][0] < float(os.environ.get("LITTLE", ".03")) * float(asked.windows.counts.sum()):
             break
         asked = asked.anew(known, tried[best][1] * moves[best])
     made = Setting(scenario, scenario.spec, causes, formulas, problem)
