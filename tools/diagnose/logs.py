@@ -161,7 +161,8 @@ def judged(
         if most < LITTLE:
             break
         best = next(n for n, (gain, _) in enumerate(tried) if gain >= most - MUCH)
-        asked = asked.anew(known, tried[best][1] * moves[best])
+        if asked is (asked := asked.anew(known, tried[best][1] * moves[best])):
+            break
     found = temper(found)
     made = Setting(inputs.scenario, inputs.scenario.spec, causes, formulas, problem)
     decision = decide(found)

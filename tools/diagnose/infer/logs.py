@@ -64,7 +64,7 @@ class Slope:
 
     @staticmethod
     def of(own: Quadratics, does: np.ndarray, known: np.ndarray) -> Slope:
-        """Of windows at a machine's knobs, which do something (k,), by the inverse of their prior's covariance (k, k)."""
+        """Of windows at a machine's knobs, which do something (k,), by their prior's inverse covariance (k, k)."""
         H = own.H.sum(axis=0)
         step = np.linalg.solve(H + known, own.eta.sum(axis=0) - (H + known) @ does)
         return Slope(step, known @ (does + step) / len(own.eta))
@@ -236,12 +236,13 @@ class Question:
     slope: np.ndarray | None = None
 
     def anew(self, found: Fleet, moved: np.ndarray) -> Question:
-        """The same, said where the knobs have moved in each span (n, k)."""
+        """The same, said where the knobs have moved in each span (n, k); as it is where the filter has no slopes."""
         at, bent = found.at[0] + moved[self.span], found.curves
         told = found.filter.run(self.windows, at).told(*bent.at(at)).times(found.share)
         slope = found.slopes[0].at(told.H) if self.slope is None else self.slope
         still = bent.at(found.at[[0]])[0][0] + found.levels.mean[0]
-        return replace(self, told=replace(told, eta=told.eta - told.H @ still - slope), slope=slope, moved=moved)
+        told = replace(told, eta=told.eta - told.H @ still - slope)
+        return replace(self, told=told, slope=slope, moved=moved) if np.isfinite(told.H).all() else self
 
     def tried(self, found: Fleet, moves: Sequence[np.ndarray]) -> list[tuple[float, float]]:
         """Of some moves (n, k): how much likelier a sample is than where it is said, and at how much of the move.
@@ -277,9 +278,8 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     still = np.zeros((int(span.max()) + 1, len(sd)))
     if found.slopes:
         progress("logs in question", 0.5)
-        return Question(data, season, span, Quadratics(still, still), found.curves.about(found.at[0]), still).anew(
-            found, still
-        )
+        nothing, bent = Quadratics(still, still), found.curves.about(found.at[0])
+        return Question(data, season, span, nothing, bent, still).anew(found, still)
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
     z, passed = walk(own, data, season, (found.at[0], wide), step)
