@@ -86,15 +86,15 @@ def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begu
         C = np.linalg.inv(top.H + np.linalg.inv(levels.root))
         m = (C @ top.eta[:, :, None])[:, :, 0]
         parents = np.zeros(machines, dtype=int)
-        z, Cz, _ = _down(seasons, levels.machine, (m[parents], C[parents]), parents)
-        zy, Cy, moved = _down(windows, levels.season, (z[machine_of], Cz[machine_of]), machine_of)
-        _, _, wandered = _down(found, levels.window, (zy[season], Cy[season]), season)
-        n, own = (len(group) - len(np.unique(group)) for group in (machine_of, season))
+        z, Cz, _ = _down(seasons, levels.machine, m[parents], C[parents])
+        zy, Cy, moved = _down(windows, levels.season, z[machine_of], Cz[machine_of])
+        _, _, wandered = _down(found, levels.window, zy[season], Cy[season])
+        n = len(machine_of)
         levels = replace(
             levels,
             season=_shrunk(moved + COUNTS * begun.season, n + COUNTS, n / (n + k)),
-            window=_shrunk(wandered + COUNTS * begun.window, own + COUNTS, 0.0),
-            freedom=n + COUNTS,
+            window=_shrunk(wandered + COUNTS * begun.window, len(found.eta) + COUNTS, 0.0),
+            freedom=max(n - len(np.unique(machine_of)), 0) + COUNTS,
             mean=z,
             covariance=Cz,
             season_mean=zy,
@@ -104,22 +104,15 @@ def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begu
 
 
 def _down(
-    own: Quadratics, spread: np.ndarray, parent: tuple[np.ndarray, np.ndarray], group: np.ndarray
+    own: Quadratics, spread: np.ndarray, m: np.ndarray, C: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Values (n, k) with covariance given the parents', and the summed squares (k, k) of deviations in each group.
-
-    Deviations are from their mean: how far that lies from what is expected tells nothing of how they scatter.
-    """
-    m, C = parent
+    """Values (n, k) with covariance given the parents', and the summed squares (k, k) of what deviates from these."""
     inverse = np.linalg.inv(own.H + np.linalg.inv(spread))
     mean = (inverse @ (own.eta - (own.H @ m[:, :, None])[:, :, 0])[:, :, None])[:, :, 0]
     share = inverse @ own.H
     cov = inverse + share @ C @ share.transpose(0, 2, 1)
     keep = np.eye(len(spread)) - share
-    size = np.bincount(group)[group]
-    off = mean - (np.array([np.bincount(group, column) for column in mean.T]) / np.bincount(group)).T[group]
-    squares = off.T @ off + ((1 - 1 / size)[:, None, None] * cov).sum(axis=0)
-    return m + mean, inverse + keep @ C @ keep.transpose(0, 2, 1), squares
+    return m + mean, inverse + keep @ C @ keep.transpose(0, 2, 1), mean.T @ mean + cov.sum(axis=0)
 
 
 def _shrunk(squares: np.ndarray, n: float, kept: float) -> np.ndarray:
