@@ -181,7 +181,7 @@ def fitted(problem: Problem, acting: Sequence[Acting], begun: Begin) -> Fit:
             break
         line = _Line(problem, look := replace(look, sd=sd))
         noise = line.scattered(noise)
-        if problem.by_law.any() and np.abs((laws := line.laws(noise)) - look.laws).max() > LITTLE:
+        if (problem.near < 1).any() and np.abs((laws := line.laws(noise)) - look.laws).max() > LITTLE:
             with suppress(SolveError):
                 line = _Line(problem, look := problem.look(look.z, look.acting, look.sd, laws))
                 noise = line.scattered(noise)

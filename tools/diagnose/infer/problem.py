@@ -198,8 +198,8 @@ class Problem:
 
     @cached_property
     def by_law(self) -> np.ndarray:
-        """Covariance of the nuisances by row of the data (n, n), in shares; 0 where a healthy campaign tells them."""
-        return by_law(self.campaigns) * (len(self.campaigns) == 1)
+        """Covariance of nuisances by rules by row of the data (n, n), in shares squared."""
+        return by_law(self.data)
 
     @property
     def m(self) -> int:

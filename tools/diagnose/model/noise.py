@@ -202,10 +202,7 @@ def terms(
         share = OIL if measured == 1 else OIL_BESIDE_REFERENCE
         found.append(Term("oils", np.concatenate([share * _oils(o, s, names) for _, (o, s) in pairs])))
     if measured == 1:
-        by = np.concatenate([s.by[:, : len(sd)] for s in seen]) * law_shares(campaigns[0], sd)
-        begins = np.cumsum([0, *(o.campaign.n for o in campaigns)])
-        rows = np.concatenate([begin + o.row for begin, o in zip(begins, campaigns, strict=False)])
-        found.append(Term("laws", covariance=by @ by.T * by_law(campaigns, points)[np.ix_(rows, rows)]))
+        found.append(Term("laws", laws(campaigns, seen, sd, points)))
     if any(o.campaign.series for o in campaigns):
         found += _logged(campaigns)
     if measured > 1:
@@ -223,13 +220,22 @@ def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
     yield Term("dwells as logged", variance=DWELL**2 * stated)
 
 
-def by_law(campaigns: Sequence[Measured], points: int = 0) -> np.ndarray:
-    """Covariance of how losses and heat paths follow speed, load and room otherwise than their laws say (n, n).
+def laws(campaigns: Sequence[Measured], seen: Sequence[Seen], sd: np.ndarray, points: int) -> np.ndarray:
+    """Effects (M, k), by nuisance, of losses and heat paths that follow the point otherwise than their laws say.
 
-    Of the rows of all campaigns, one after the other, in shares squared.
+    With a healthy campaign of the same rig the remainder says it.
     """
-    x = np.concatenate([linear[:, 1:] for linear, _ in smooth_features(campaigns, points)])
-    return np.asarray(x @ x.T)
+    blocks = []
+    for o, s, (linear, _) in zip(campaigns, seen, smooth_features(campaigns, points), strict=True):
+        by = law_shares(o, sd) * s.by[:, : len(sd)]
+        blocks.append((by[:, :, None] * linear[o.row, None, 1:]).reshape(o.m, -1))
+    return np.concatenate(blocks)
+
+
+def by_law(o: Measured) -> np.ndarray:
+    """Covariance of how a nuisance does so in each row (n, n), in shares squared."""
+    linear = smooth_features([o], 0)[0][0][:, 1:]
+    return np.asarray(linear @ linear.T)
 
 
 def law_shares(o: Measured, sd: np.ndarray) -> np.ndarray:
