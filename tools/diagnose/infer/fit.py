@@ -29,7 +29,7 @@ ROUNDS = 4
 STALLED = 0.5
 #: Log odds, a rule, of a machine that is as far from its rules as they leave open against one that is as near as what
 #: else a rig file says.
-OPEN = 1.1
+OPEN = 1.15
 #: Longest step of a nuisance.
 LONGEST = 1.5
 #: A size (or that share of it).
