@@ -169,19 +169,18 @@ def fitted(problem: Problem, acting: Sequence[Acting], begun: Begin) -> Fit:
         SolveError: the model cannot be run where the fit begins
     """
     look = _begun(problem, acting, begun)
-    line = _Line(problem, look)
+    line, rules = _Line(problem, look), (problem.near < 1).any()
     noise = line.scattered(problem.noise(look, begun.scales))
     for k in range(ROUNDS):
         before, look = look, _settled(problem, look, noise)
         if k and look is not before:  # what scatters follows the point: whole ways go to and fro
             with suppress(SolveError):
                 look = problem.look(*line.vector.split((before.x + look.x) / 2), look.sd, look.laws)
-        sd = _Line(problem, look).ruled(noise) if (problem.near < 1).any() else look.sd
-        if look is before and np.array_equal(sd, look.sd):
+        line = _ruled(problem, look, noise) if rules else _Line(problem, look)
+        if look is before and np.array_equal(line.look.sd, look.sd):
             break
-        line = _Line(problem, look := replace(look, sd=sd))
-        noise = line.scattered(noise)
-        if (problem.near < 1).any() and np.abs((laws := line.laws(noise)) - look.laws).max() > LITTLE:
+        look, noise = line.look, line.scattered(noise)
+        if rules and np.abs((laws := line.laws(noise)) - look.laws).max() > LITTLE:
             with suppress(SolveError):
                 line = _Line(problem, look := problem.look(look.z, look.acting, look.sd, laws))
                 noise = line.scattered(noise)
@@ -273,25 +272,14 @@ class _Line:
         by = self.look.jacobian[:, : problem.nz] * law_shares(problem.data, self.look.sd) ** 2
         return np.asarray((problem.by_law[:, row] @ (by * a[:, None])).T)
 
-    def ruled(self, noise: Noise) -> np.ndarray:
-        """Standard deviations of the nuisances (nz,) where all rules hold or none does, whichever is likelier."""
-        lines = [_Line(self.problem, replace(self.look, sd=sd)) for sd in (np.ones(self.problem.nz), self.problem.near)]
-
-        def log(line: _Line) -> float:
-            """Log density, up to a constant."""
-            white = White.of(line.problem.noise(line.look, noise.scales).covariance + line.wide)
-            return white.log_density(white(line.residual)) + line.by_rules(line.look.sd)
-
-        return max(lines, key=log).look.sd
-
-    def by_rules(self, sd: np.ndarray) -> float:
-        """Log prior of whether all rules hold, by standard deviations (nz,)."""
-        return -float(((self.problem.near < 1) & (sd < 1)).sum()) * OPEN
+    def by_rules(self) -> float:
+        """Log prior of whether all rules hold."""
+        return -float(((self.problem.near < 1) & (self.look.sd < 1)).sum()) * OPEN
 
     def weighed(self, noise: Noise) -> Fit:
         """The fit with a scatter, and its evidence."""
         V, look, residual = noise.covariance + self.known, self.look, self.residual
-        prior = noise.log_prior + self.by_rules(look.sd)
+        prior = noise.log_prior + self.by_rules()
         effects = self._effects()
         rough = _rough(self.problem, effects)
         logs = []
@@ -322,3 +310,14 @@ class _Line:
         gradient = J.T @ white(self.problem.measured - self.look.shown) - vector.precision * x
         promised = 0.5 * gradient[free] @ np.linalg.solve(H[np.ix_(free, free)], gradient[free])
         return float(promised) if promised > STALLED else 0.0
+
+
+def _ruled(problem: Problem, look: Look, noise: Noise) -> _Line:
+    """The line at a look where all rules hold or none does, whichever is likelier."""
+
+    def log(line: _Line) -> float:
+        """Log density, up to a constant."""
+        white = White.of(problem.noise(line.look, noise.scales).covariance + line.wide)
+        return white.log_density(white(line.residual)) + line.by_rules()
+
+    return max((_Line(problem, replace(look, sd=sd)) for sd in (np.ones(problem.nz), problem.near)), key=log)

@@ -98,9 +98,9 @@ def directions(
     """
     at, rows = values(x), []
     for k, step in enumerate(STEP * np.sqrt(np.diag(covariance))):
-        ends = [values(x + sign * step * np.eye(len(x))[k]) for sign in (-1.0, 1.0)]
-        slopes = ((ends[1].get(path, value) - ends[0].get(path, value)) / (2 * step) for path, value in at.items())
-        rows.append(list(slopes))  # a part that does nothing is left out
+        # what does nothing at an end is left out there
+        ends = [{**at, **values(x + sign * step * np.eye(len(x))[k])} for sign in (-1.0, 1.0)]
+        rows.append([(ends[1][path] - ends[0][path]) / (2 * step) for path in at])
     scale = np.array([abs(value) or 1.0 for value in at.values()])
     slopes = np.array(rows).T / scale[:, None]  # (values, d)
     turned, sizes, _ = np.linalg.svd(slopes @ np.linalg.cholesky(covariance), full_matrices=False)
