@@ -122,10 +122,10 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     ],
 )
 def test_the_ratio_is_that_of_the_name_plate(stages, ratio):
-    """Helix angle and module leave room for the numbers of teeth; what is off by more than a percent is told."""
+    """Helix angle and module leave room for the numbers of teeth; what is off is told."""
     for power in (400.0, 40e3):
         made = sizing.unit(stages.split(","), ratio, power, 1480 * math.pi / 30)
-        assert made.ratio == pytest.approx(ratio, rel=0.0126)
+        assert made.ratio == pytest.approx(ratio, rel=0.005)
         assert all(7.9 < math.degrees(s.beta) < 20.1 for s in made.stages if s.kind == "helical")
 
 
@@ -137,7 +137,7 @@ def test_a_ratio_that_whole_teeth_do_not_have_is_told():
 def test_what_turns_too_fast_for_a_bath_is_told(gearheat, tmp_path):
     plate = ("--stages", "helical", "--ratio", 5, "--power", "5 MW", "--oil", "ISO VG 46", "--cooler")
     answer = gearheat("new", "a", *plate, "--speed", "10000 rpm", "-o", tmp_path / "fast.toml")
-    for words in ("moves at 87 m/s", "n d_m = 2.2e+06 mm/min", "rubs at 68 m/s", "friction_schlenk, v_sum = 60"):
+    for words in ("moves at 87 m/s", "n d_m = 2.2e+06 mm/min", "rubs at 73 m/s", "friction_schlenk, v_sum = 61"):
         assert words in answer.err
     plate = ("--stages", "helical", "--ratio", 5, "--power", "5 kW", "--speed", "6000 rpm")
     assert "motors" not in gearheat("new", "a", *plate, "-o", tmp_path / "a.toml").err
@@ -146,8 +146,8 @@ def test_what_turns_too_fast_for_a_bath_is_told(gearheat, tmp_path):
 def test_a_centre_distance_that_the_load_does_not_suit_is_told(gearheat, tmp_path):
     plate = ("--stages", "helical,helical", "--ratio", 12.5, "--power", "75 kW", "--speed", "1480 rpm")
     answer = gearheat("new", "a", *plate, "--centre-distance", "100 mm", "-o", (path := tmp_path / "a.toml"))
-    assert "K* is 51.6 N/mm2, usual 1 to 6: the load asks for 224 mm" in answer.err
-    assert "(u + 1)/u of 51.6 N/mm2 by a = 100 mm of a data sheet" in path.read_text("utf-8")
+    assert "K* is 53.6 N/mm2, usual 1 to 6: the load asks for 224 mm" in answer.err
+    assert "(u + 1)/u of 53.6 N/mm2 by a = 100 mm of a data sheet" in path.read_text("utf-8")
     assert "K*" not in gearheat("new", "b", *plate, "--centre-distance", "250 mm", "-o", tmp_path / "b.toml").err
 
 
@@ -620,7 +620,7 @@ def test_bearings_can_be_built(stages, ratio, kW):
 
 def test_a_unit_of_two_stages_and_55_kw_stands_still_air():
     """Makers sell it without a fan. Where two balls do not last one locates, and cylindrical rollers carry more."""
-    made = new("a", stages="helical,helical", ratio=10, power="55 kW", speed="1480 rpm", oil="ISO VG 320")
+    made = new("a", stages="helical,helical", ratio=12.5, power="55 kW", speed="1480 rpm", oil="ISO VG 320")
     assert 75 < made.sizes["oil_degC"] < 115 and 0.96 < made.sizes["efficiency"] < 0.98
     parts = {part.name: part for part in made.scenario.spec.parts}
     for shaft, located, free in (("input", "b", "a"), ("middle", "a", "b")):
@@ -647,8 +647,8 @@ def test_friction_of_tapered_bearings_goes_by_the_external_axial_load():
 def test_bearings_that_cannot_be_built_are_told(gearheat, tmp_path):
     plate = ("--stages", "helical", "--ratio", "4", "--power", "250 kW", "--speed", "1500 rpm")
     answer = gearheat("new", "a", *plate, "--centre-distance", "160 mm", "--cooler", "-o", tmp_path / "a.toml")
-    assert "SKF 32316 and SKF 32317: a bore of 85 mm, 15 mm more than the pinion" in answer.err
-    assert "bearings beside each other overlap by 88 mm" in answer.err
+    assert "SKF 32316: a bore of 80 mm, 10 mm more than the pinion" in answer.err
+    assert "bearings beside each other overlap by 68 mm" in answer.err
 
 
 @pytest.mark.parametrize("stages", ["helical,helical", "bevel,helical", "planetary"])

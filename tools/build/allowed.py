@@ -130,18 +130,19 @@ def last_ratio(kinds: Sequence[str], ratio: float) -> float:
     return ratio
 
 
-def first_ratio(ratio: float, kinds: Sequence[str]) -> float:
+def first_ratio(ratio: float, kinds: Sequence[str], shift: float = 1.0) -> float:
     """Ratio of the next stage: the first ones have more, so that all wheels are of like size.
 
     Args:
         ratio: of all stages that are left
         kinds: of these
+        shift: on it, where that is allowed
     """
     stages = len(kinds)
     if kinds[-1] == LAST and stages > 1:  # gears before a worm have less, as worms need 7 at least
         least, most = LEAST[LAST], MOST[LAST]
-        share = min(max(ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
+        share = min(max(shift * ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
         return float(min(max(share, 1.0), MOST[kinds[0]]))
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
     least, most = (ratio / math.prod(limit.get(k, 1.0) for k in kinds[1:]) for limit in (LEAST, MOST))
-    return float(min(max(share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))
+    return float(min(max(shift * share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))

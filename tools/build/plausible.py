@@ -31,7 +31,7 @@ DIPPING = 20.0
 N_D = 1e6
 LIPS = (15.0, 35.0)
 #: How far the ratio may be from that of the name plate untold [1].
-OFF = 0.01
+OFF = 0.003
 #: Usual loads of a stage [Pa].
 LOADED = {"worm": ("the wheel's torque over a3", 0.2e6, 1.3e6), "gears": ("K*", 1.0e6, 6.0e6)}
 #: Efficiency below which standard sizes do not fit the power.

@@ -20,7 +20,7 @@ from .allowed import IN_LINE, LAST, check, first_ratio
 from .data_sheet import Wanted
 from .shafts import Shaft, draw_shafts, find_tight
 from .stages import BevelStage, PlanetaryStage, Stage, WormStage
-from .teeth import CENTRES, MAKE, larger
+from .teeth import CENTRES, CLOSE, MAKE, larger
 
 #: Thickness of walls: that of the smallest ones [m], and what is added of the largest stage [1].
 WALL = 0.003, 0.025
@@ -41,6 +41,8 @@ SUMP = 1.1e-7
 FILLED = 0.8
 #: Share of the housing's volume that is oil where no level follows from wheels.
 SHARE = 0.16
+#: On the ratio of the first of several stages, tried in this order until whole teeth come close to the ratio of all.
+SHIFTS = (1.0, 0.98, 1.02, 0.96, 1.04)
 #: Share of the walls that bath and splash reach [1].
 REACHED = 0.55
 #: Speed of the oil along the walls over that of the pitch line [1].
@@ -132,15 +134,25 @@ def _stages(
     kinds: Sequence[str], ratio: float, T: float, n: float, centres: Sequence[float | None]
 ) -> tuple[Stage, ...]:
     """Stages by load, or of centre distances, side by side."""
-    found: list[Stage] = []
-    for k, kind in enumerate(kinds):
-        found.append(made := MAKE[kind](kind, first_ratio(ratio, kinds[k:]), T, n, centres[k]))
-        T, n, ratio = T * made.u, n / made.u, ratio / made.u
+    shifts = SHIFTS if len(kinds) > 1 else SHIFTS[:1]
+    tried = [_geared(kinds, ratio, (T, n), centres, shift) for shift in shifts]
+    found = min(tried, key=lambda own: max(abs(math.prod(s.u for s in own) / ratio - 1), CLOSE))
     wall = _wall(found)
     least = WIDE[kind_of_box(found)] * max((s.a for s in found if s.kind != IN_LINE), default=0.0) - 2 * END * wall
     side = max(SIDE * wall, (least - sum(s.b + wall for s in found) + wall) / 2)
     x = accumulate((s.b + wall for s in found), initial=side)
     return tuple(replace(s, x=start + s.b / 2) for s, start in zip(found, x, strict=False))
+
+
+def _geared(
+    kinds: Sequence[str], ratio: float, drive: tuple[float, float], centres: Sequence[float | None], shift: float
+) -> list[Stage]:
+    """Stages for a torque and a speed; a shift is on the ratio of the first."""
+    (T, n), found = drive, list[Stage]()
+    for k, kind in enumerate(kinds):
+        found.append(made := MAKE[kind](kind, first_ratio(ratio, kinds[k:], shift), T, n, centres[k]))
+        T, n, ratio, shift = T * made.u, n / made.u, ratio / made.u, 1.0
+    return found
 
 
 def kind_of_box(stages: Sequence[Stage]) -> str:

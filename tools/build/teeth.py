@@ -38,10 +38,8 @@ R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 
 CENTRES = tuple(m * 10**k for k in (1, 2, 3) for m in R_20)
 #: Usual helix angles [rad].
 HELIX = (math.radians(8.0), math.radians(20.0))
-#: How close to a ratio is close enough for a stage [1].
-CLOSE = 0.0125
-#: The same of bevel gears, which run in pairs and had better have no common factor [1].
-EVEN = 0.02
+#: How close to a ratio is close enough for a stage [1]: to torques at both ends, one that is off is a loss.
+CLOSE = 0.0005
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 
@@ -80,11 +78,9 @@ def _numbers(u: float, sums: Sequence[tuple[float, int]]) -> tuple[float, int, i
     return _first_close(u, found)
 
 
-def _first_close(
-    u: float, found: Sequence[tuple[int, float, int, int]], close: float = CLOSE
-) -> tuple[float, int, int]:
+def _first_close(u: float, found: Sequence[tuple[int, float, int, int]]) -> tuple[float, int, int]:
     """Of ranks, modules and numbers of teeth: the first that come close enough, without a common factor if they can."""
-    best = min(found, key=lambda one: (max(_off(one[2], one[3], u), close), one[0], _fault(one[2], one[3], u)))
+    best = min(found, key=lambda one: (max(_off(one[2], one[3], u), CLOSE), one[0], _fault(one[2], one[3], u)))
     return best[1:]
 
 
@@ -94,7 +90,7 @@ def _bevel(kind: str, u: float, T: float, n: float, a: float | None = None) -> B
     d_m = (2 * T / (slim * u * K_BEVEL)) ** (1 / 3)
     usual = next(z for most, z in BEVEL_TEETH.items() if u <= most + 1e-9)
     tried = [(abs(k), 0.0, usual + k, round(u * (usual + k)) + j) for k in (0, 1, -1, 2, -2) for j in (-1, 0, 1)]
-    _, z_1, z_2 = _first_close(u, tried, EVEN)
+    _, z_1, z_2 = _first_close(u, tried)
     sin_1, sin_2 = (z / math.hypot(z_1, z_2) for z in (z_1, z_2))
     d_e = 0.005 * math.ceil(d_m * z_2 / z_1 / (1 - FACE / 2) / 0.005)
     b = math.floor(1000 * FACE * d_e / 2 / sin_2) / 1000
@@ -139,7 +135,7 @@ def _planetary(kind: str, u: float, T: float, n: float, a: float | None = None) 
     part = max(u / 2 - 1, 0.5)
     d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
     sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
-    z_1, z_3 = min(sizes, key=lambda size: (round(abs(1 + size[1] / size[0] - u) / u, 2), size[0]))
+    z_1, z_3 = min(sizes, key=lambda size: (max(abs((1 + size[1] / size[0]) / u - 1), CLOSE), size[0]))
     m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
     b = max(round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)), 1) / 1000
     return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, 0.0, z_3)

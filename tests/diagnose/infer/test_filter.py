@@ -156,7 +156,7 @@ def test_a_replay_of_a_log_of_some_hours(tmp_path: Path) -> None:
 def own_unit(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A unit of `gearheat new` with a torque transducer at either end."""
     path = tmp_path_factory.mktemp("own") / "mine.toml"
-    gh.new("mine", stages="helical,helical", ratio=10, power="11 kW", speed="1450 rpm", out=path)
+    gh.new("mine", stages="helical,helical", ratio=12, power="11 kW", speed="1450 rpm", out=path)
     shown = 'T_output_Nm = "output.tau"'
     assert path.read_text("utf-8").count(shown) == 1
     path.write_text(path.read_text("utf-8").replace(shown, f'{shown}\nT_input_Nm = "input.tau"'), "utf-8")
