@@ -47,4 +47,4 @@ def test_what_is_set_wrong_is_named(fault: str, seed: int, tmp_path: Path) -> No
         return
     cause, before = NAMED[fault]
     assert answer.alarm
-    assert any(class_of(cause) in h.names for h in answer.hypotheses[: before + 1])
+    assert any(class_of(cause) in h.names for h in [answer.top, *answer.hypotheses][: before + 1])
