@@ -33,6 +33,14 @@ from .setting import Setting
 DAY = 86400.0
 #: p of what is left, at most: samples count for less than they may, so that it is smaller than expected.
 QUIET = 0.98
+#: How often logs are asked at most: where the machine was healthy, then where likely causes have moved it.
+LOOKS = 4
+#: Hypotheses that are tried there, the likeliest ones.
+LIKELIEST = 20
+#: Log likelihood of a sample by which one is so much likelier that logs are asked there.
+LITTLE = 0.03
+#: By which one that explains more goes before a likelier one.
+MUCH = 1.0
 #: Parts of the spans that are left out in turn.
 FOLDS = 3
 
@@ -139,13 +147,24 @@ def judged(
         progress: called with (stage, fraction done)
         formulas: those of `formulas_of`, where they are there
     """
-    request, problem = inputs.request, problem_of(known, asked, logs.logs)
-    formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
+    request, formulas = inputs.request, tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
-    scenario = inputs.scenario
-    made = Setting(scenario, scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
-    found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
+    for _ in range(LOOKS):
+        problem = problem_of(known, asked, logs.logs)
+        found = weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p))
+        if asked.slope is None:
+            break
+        moves = [_moves(problem.spans, h) for h in found.hypotheses[:LIKELIEST]]
+        tried = asked.tried(known, moves)
+        most = max(gain for gain, _ in tried)
+        if most < LITTLE:
+            break
+        best = next(n for n, (gain, _) in enumerate(tried) if gain >= max(most - MUCH, LITTLE))
+        if asked is (asked := asked.anew(known, tried[best][1] * moves[best])):
+            break
+    found = temper(found)
+    made = Setting(inputs.scenario, inputs.scenario.spec, causes, formulas, problem)
     decision = decide(found)
     return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs), problem.spans)
 
