@@ -40,7 +40,7 @@ LIKELIEST = 20
 #: Log likelihood of a sample by which one is so much likelier that logs are asked there.
 LITTLE = 0.03
 #: By which one that explains more goes before a likelier one.
-MUCH = 1.0
+MUCH = 0.1
 #: Parts of the spans that are left out in turn.
 FOLDS = 3
 
@@ -150,15 +150,16 @@ def judged(
     request, formulas = inputs.request, tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
     options = Options(request.alpha, request.seed, request.causes)
+    found, problem = None, problem_of(known, asked, logs.logs)
     for _ in range(LOOKS):
-        problem = problem_of(known, asked, logs.logs)
-        found = weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p))
-        if asked.slope is None:
-            break
-        moves = [_moves(problem.spans, h) for h in found.hypotheses[:LIKELIEST]]
-        tried = asked.tried(known, moves)
-        most = max(gain for gain, _ in tried)
-        if most < LITTLE:
+        there = problem_of(known, asked, logs.logs)
+        weighed = weigh(there, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p))
+        moves = [_moves(there.spans, h) for h in weighed.hypotheses[:LIKELIEST]]
+        tried = asked.tried(known, moves) if asked.slope is not None else [(0.0, 1.0)]
+        if found and tried[0][0] < -LITTLE:
+            break  # what is likeliest here turns out worse: it bends too much to be asked here
+        found, problem = weighed, there
+        if (most := max(gain for gain, _ in tried)) < LITTLE:
             break
         best = next(n for n, (gain, _) in enumerate(tried) if gain >= max(most - MUCH, LITTLE))
         if asked is (asked := asked.anew(known, tried[best][1] * moves[best])):
