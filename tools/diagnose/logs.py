@@ -43,7 +43,7 @@ LITTLE = 0.03
 NEAR = 0.1
 #: By which one explains so little that it counts for less, and by how much [nat].
 MUCH = 1.0
-WORSE = 4.0
+WORSE = 10.0
 #: Parts of the spans that are left out in turn.
 FOLDS = 3
 
@@ -171,7 +171,7 @@ def _looked(
         weighed = weigh(there, formulas, options, progress)
         moves = [_moves(there.spans, h) for h in weighed.hypotheses[:LIKELIEST]]
         tried = asked.tried(known, moves) if asked.slope is not None else [(0.0, 1.0)]
-        if found and tried[0][0] < -LITTLE:
+        if found and tried[0][0] < -MUCH:
             break  # what is likeliest here turns out worse: it bends too much to be asked here
         most = max(gain for gain, _ in tried)
         worse = [WORSE * (most - gain > MUCH) for gain, _ in tried]
