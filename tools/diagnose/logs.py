@@ -41,7 +41,7 @@ LIKELIEST = 20
 LITTLE = 0.03
 #: By which one that explains more goes before a likelier one there.
 NEAR = 0.1
-#: By which one explains so little that it counts for less, and by how much [nat].
+#: By which it is so much likelier that one by half of it counts for less, and by how much [nat].
 MUCH = 1.0
 WORSE = 10.0
 #: Parts of the spans that are left out in turn.
@@ -174,7 +174,7 @@ def _looked(
         if found and tried[0][0] < -MUCH:
             break  # what is likeliest here turns out worse: it bends too much to be asked here
         most = max(gain for gain, _ in tried)
-        worse = [WORSE * (most - gain > MUCH) for gain, _ in tried]
+        worse = [WORSE * (most > MUCH and gain < most / 2) for gain, _ in tried]
         worse += [max(worse)] * (len(weighed.hypotheses) - len(worse))
         found, problem = weighed.plus(-np.array(worse)), there
         if most < LITTLE:
