@@ -18,7 +18,7 @@ from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
-from .infer.logs import Fleet, LogProblem, Progress, Question, fleet, problem_of, question, window_length
+from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question, window_length
 from .infer.problem import Aside
 from .infer.weigh import Options, weigh
 from .library.knobs import moves
@@ -33,17 +33,6 @@ from .setting import Setting
 DAY = 86400.0
 #: p of what is left, at most: samples count for less than they may, so that it is smaller than expected.
 QUIET = 0.98
-#: How often logs are asked at most: where the machine was healthy, then where likely causes have moved it.
-LOOKS = 4
-#: Hypotheses that are tried there, the likeliest ones.
-LIKELIEST = 20
-#: Log likelihood of a sample by which one is so much likelier that logs are asked there.
-LITTLE = 0.03
-#: By which one that explains more goes before a likelier one there.
-NEAR = 0.1
-#: By which it is so much likelier that one by half of it counts for less, and by how much [nat].
-MUCH = 1.0
-WORSE = 10.0
 #: Parts of the spans that are left out in turn.
 FOLDS = 3
 
@@ -150,40 +139,15 @@ def judged(
         progress: called with (stage, fraction done)
         formulas: those of `formulas_of`, where they are there
     """
-    request, formulas = inputs.request, tuple(formulas or formulas_of(known, logs.logs[0]))
+    request, problem = inputs.request, problem_of(known, asked, logs.logs)
+    formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
+    scenario = inputs.scenario
+    made = Setting(scenario, scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
-    found, problem = _looked(known, asked, (logs.logs, formulas, options), lambda t, p: progress(t, 0.62 + 0.2 * p))
-    found = temper(found)
-    made = Setting(inputs.scenario, inputs.scenario.spec, causes, formulas, problem)
+    found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)
     return LogDiagnosis(found, decision, _findings(made, found, decision, inputs, logs), problem.spans)
-
-
-def _looked(
-    known: Fleet, asked: Question, what: tuple[Sequence[Log], Sequence[Formula], Options], progress: Progress
-) -> tuple[Found, LogProblem]:
-    """What is found of logs, forms and options, and of what problem: asked again where what is likely has moved it."""
-    logs, formulas, options = what
-    found, problem = None, problem_of(known, asked, logs)
-    for _ in range(LOOKS):
-        there = problem_of(known, asked, logs)
-        weighed = weigh(there, formulas, options, progress)
-        moves = [_moves(there.spans, h) for h in weighed.hypotheses[:LIKELIEST]]
-        tried = asked.tried(known, moves) if asked.slope is not None else [(0.0, 1.0)]
-        if found and tried[0][0] < -MUCH:
-            break  # what is likeliest here turns out worse: it bends too much to be asked here
-        most = max(gain for gain, _ in tried)
-        worse = [WORSE * (most > MUCH and gain < most / 2) for gain, _ in tried]
-        worse += [max(worse)] * (len(weighed.hypotheses) - len(worse))
-        found, problem = weighed.plus(-np.array(worse)), there
-        if most < LITTLE:
-            break
-        best = next(n for n, (gain, _) in enumerate(tried) if gain >= max(most - NEAR, LITTLE))
-        if asked is (asked := asked.anew(known, tried[best][1] * moves[best])):
-            break
-    assert found
-    return found, problem
 
 
 def composed(

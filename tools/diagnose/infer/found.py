@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -125,15 +125,11 @@ class Found:
 
     def beside(self, log_bayes_factor: Callable[[Iterable[str]], float]) -> Found:
         """The search with what other data say of its causes, where the two share nothing else that is uncertain."""
-        return self.plus([log_bayes_factor(h.causes) for h in self.hypotheses])
-
-    def plus(self, by: Sequence[float] | np.ndarray) -> Found:
-        """The search with what else is known of its hypotheses, a log Bayes factor each."""
+        by = np.array([log_bayes_factor(h.causes) for h in self.hypotheses])
+        hypotheses = tuple(replace(h, log_joint=h.log_joint + b) for h, b in zip(self.hypotheses, by, strict=True))
         with np.errstate(divide="ignore"):
             logs = np.log(self.probabilities) + by
-        order = np.argsort(-logs, kind="stable")
-        hypotheses = tuple(replace(h := self.hypotheses[n], log_joint=h.log_joint + by[n]) for n in order)
-        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - np.logaddexp.reduce(logs))[order])
+        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - np.logaddexp.reduce(logs)))
 
     def log_bayes_factor(self, causes: Iterable[str]) -> float:
         """Of causes against none, free of their prior; nothing of causes that the search did not ask about.

@@ -39,39 +39,12 @@ FEW = 5
 STIFF = 0.02
 #: Time from the last healthy logs to those in question, where it is no calendar's [s].
 LATER = 14 * 86400.0
-#: Windows by which moves are tried, at most, and how much of each.
-TRIED = 48
-TIMES = (1.0, 0.5, 2.0)
+#: Log likelihood of a sample by which a change is so large that it matters where the filter is.
+LARGE = 0.3
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True, eq=False)
-class Slope:
-    """What windows of a healthy machine promise beyond its knobs: the filter bends where no move makes them likelier.
-
-    Others of the same machine promise as much. It is no change.
-
-    Args:
-        step: of what the knobs do, to where they promise to be likeliest (k,)
-        prior: slope of the prior there, a window's share (k,)
-    """
-
-    step: np.ndarray
-    prior: np.ndarray
-
-    @staticmethod
-    def of(own: Quadratics, does: np.ndarray, known: np.ndarray) -> Slope:
-        """Of windows at a machine's knobs, which do something (k,), by their prior's inverse covariance (k, k)."""
-        H = own.H.sum(axis=0)
-        step = np.linalg.solve(H + known, own.eta.sum(axis=0) - (H + known) @ does)
-        return Slope(step, known @ (does + step) / len(own.eta))
-
-    def at(self, H: np.ndarray) -> np.ndarray:
-        """Of windows by their curvature there (n, k, k): (n, k)."""
-        return np.asarray(H @ self.step + self.prior)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +61,6 @@ class Fleet:
         at: knobs of the machines at which they say it (machines, k)
         curves: of its knobs
         seasons: machine and number of a season -> number of that one in the levels, its middle time [s]
-        slopes: machine -> what its windows promise beyond there, where the one in question has any
     """
 
     filter: Filter
@@ -100,7 +72,6 @@ class Fleet:
     at: np.ndarray
     curves: Curves
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
-    slopes: Mapping[int, Slope] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
         """The same with one of its machines in question, without its past."""
@@ -108,8 +79,7 @@ class Fleet:
         levels = replace(self.levels, mean=mean, covariance=covariance)
         seasons = {(0, number): known for (one, number), known in self.seasons.items() if one == machine}
         past = self.past.some(np.zeros(0, dtype=int))
-        slopes = {0: self.slopes[machine]} if self.slopes else {}
-        return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons, slopes=slopes)
+        return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons)
 
     def going_on(self, logs: Sequence[Log]) -> Fleet:
         """The same for logs in question in one season of the machine's healthy ones, the nearer the more so.
@@ -198,21 +168,10 @@ def fleet(
     at, passed = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
     share = independent(passed)
     bent = curves(own, past)
-    told, slopes = passed.told(*bent.at(at[machine])).times(share), dict[int, Slope]()
-    if (machine == 0).any():  # all is told from where each machine was healthy
-        does, known = bent.at(at)[0], np.linalg.inv(begun.root + begun.machine)
-        eta = told.eta - (told.H @ does[machine][:, :, None])[:, :, 0]
-        for one in np.unique(machine):
-            mine = machine == one
-            slopes[one] = Slope.of(Quadratics(told.eta[mine], told.H[mine]), does[one], known)
-            eta[mine] -= slopes[one].at(told.H[mine])
-        told = replace(told, eta=eta)
-    levels = estimate(told, season, machine_of, begun)
-    if slopes:
-        levels = replace(levels, mean=levels.mean + does, season_mean=levels.season_mean + does[machine_of])
+    levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons, slopes)
+    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,8 +184,6 @@ class Question:
         span: number of the span of time of each window, those of a season one after the other
         told: what each window says of moves of the knobs from the machine's values, in proportion to effects
         curves: of moves from the machine's values
-        moved: where the knobs have moved in each span as it is said (spans, k)
-        slope: what each window would promise of a healthy machine (n, k); None without a past
     """
 
     windows: Windows
@@ -234,31 +191,6 @@ class Question:
     span: np.ndarray
     told: Quadratics
     curves: Curves
-    moved: np.ndarray
-    slope: np.ndarray | None = None
-
-    def anew(self, found: Fleet, moved: np.ndarray) -> Question:
-        """The same, said where the knobs have moved in each span (n, k); as it is where the filter has no slopes."""
-        at, bent = found.at[0] + moved[self.span], found.curves
-        told = found.filter.run(self.windows, at).told(*bent.at(at)).times(found.share)
-        slope = found.slopes[0].at(told.H) if self.slope is None else self.slope
-        told = replace(told, eta=told.eta - told.H @ found.levels.mean[0] - slope)
-        return replace(self, told=told, slope=slope, moved=moved) if np.isfinite(told.H).all() else self
-
-    def tried(self, found: Fleet, moves: Sequence[np.ndarray]) -> list[tuple[float, float]]:
-        """Of some moves (n, k): how much likelier a sample is than where it is said, and at how much of the move.
-
-        They are tried by running some of the windows: far away what these say is no quadratic.
-        """
-        some = np.linspace(0, len(self.span) - 1, min(len(self.span), TRIED)).astype(int)
-        data, span = self.windows.some(some), self.span[some]
-
-        def value(move: np.ndarray) -> float:
-            log = log_likelihood(found.filter.run(data, found.at[0] + move[span], slopes=False)) / data.counts.sum()
-            return log if np.isfinite(log) else -np.inf
-
-        here = value(self.moved)
-        return [max((value(times * move) - here, times) for times in TIMES) for move in moves]
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
@@ -276,18 +208,22 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     if not found.share:
         suit(own, data, np.zeros((len(season), len(own.knobs))))
     span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
-    still = np.zeros((int(span.max()) + 1, len(sd)))
-    if found.slopes:
-        progress("logs in question", 0.5)
-        nothing, bent = Quadratics(still, still), found.curves.about(levels.mean[0])
-        return Question(data, season, span, nothing, bent, still).anew(found, still)
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
     z, passed = walk(own, data, season, (found.at[0], wide), step)
-    at, bent = z[season], found.curves if found.share else curves(own, data)
+    nearer = walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)
+    at = z[season]
+    if found.share:  # what is not told apart moves along with a change: the filter stays unless the change is large
+        healthy = np.tile(found.at[0], (len(season), 1))
+        still = own.run(data, healthy)
+        if log_likelihood(passed) - log_likelihood(still) < LARGE * data.counts.sum():
+            at, passed = healthy, still
+    if log_likelihood(nearer[1]) - log_likelihood(passed) > data.counts.sum():
+        at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
+    bent = found.curves if found.share else curves(own, data)
     told = passed.told(*bent.at(at)).times(found.share or independent(passed))
     moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
-    return Question(data, season, span, moves, bent.about(levels.mean[0]), still)
+    return Question(data, season, span, moves, bent.about(levels.mean[0]))
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:

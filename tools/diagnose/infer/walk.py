@@ -53,6 +53,7 @@ def walk(
     group: np.ndarray,
     expected: tuple[np.ndarray, np.ndarray],
     progress: Callable[[int, float], None],
+    share: float = 0.0,
 ) -> tuple[np.ndarray, Passed]:
     """The likeliest knobs of groups of windows: passes, each where the one before points to, until they stay there.
 
@@ -62,6 +63,7 @@ def walk(
         group: number of the group of each
         expected: where all groups begin and are expected (k,), and their covariance about it (k, k)
         progress: told of the number of a pass and the share of it that is done
+        share: of the samples that counts; 0 for what each pass shows
 
     Returns:
         knobs (groups, k), and the pass there
@@ -78,7 +80,7 @@ def walk(
     for n in range(PASSES):
         passed = own.run(few, z[of], progress=partial(progress, n))
         said, scatter = passed.told(z[of]), own.scatter
-        counted = whole * min(independent(passed), 1.0)
+        counted = whole * (share or min(independent(passed), 1.0))
         if own.learns:
             own.scatter = _scatter(own, passed)
             passed = own.run(few, z[of], slopes=False)
