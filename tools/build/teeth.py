@@ -135,7 +135,7 @@ def _planetary(kind: str, u: float, T: float, n: float, a: float | None = None) 
     part = max(u / 2 - 1, 0.5)
     d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
     sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
-    z_1, z_3 = min(sizes, key=lambda size: (max(abs((1 + size[1] / size[0]) / u - 1), CLOSE), size[0]))
+    z_1, z_3 = min(sizes, key=lambda size: (max(_off(size[0], sum(size), u), CLOSE), size[0]))
     m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
     b = max(round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)), 1) / 1000
     return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, 0.0, z_3)
