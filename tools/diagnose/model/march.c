@@ -219,7 +219,7 @@ static void consistent(Runs *R) {
 /* A stage at a share of the phase, from a line through the last two or else from the last; lanes that fail are out. */
 static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   const Plant *P = R->plant;
-  const double ahead = R->now > R->before ? (share - R->now) / (R->now - R->before) : 0;
+  const double ahead = R->now > R->before && !R->duty->steady ? (share - R->now) / (R->now - R->before) : 0;
   lanes length = time;
   int left[LANES];
   if (R->duty->paced[R->phase])
