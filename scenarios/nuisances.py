@@ -91,6 +91,10 @@ def _oil_outside(roles: Roles) -> Sequence[str]:
     return [p for p in roles.scaled(*roles.oil_side) if p not in _oil_inside(roles)]
 
 
+def _flow_of_fans(roles: Roles) -> Sequence[str]:
+    return [path for paths in roles.failing("cooling.fan").values() for path, e in paths.items() if e == 1]
+
+
 def _of_surfaces(roles: Roles, key: str) -> Sequence[str]:
     return [f"{name}.{key}" for name in roles.surfaces]
 
@@ -116,6 +120,7 @@ GROUPS: tuple[Group, ...] = (
     Group("foundation", "hconv", 0.7, lambda r: r.scaled(*r.foundation), share=0.5),
     Group("outer area", "hconv", 0.0, _outer_area, share=0.0),
     Group("convection", "hconv", 0.6, lambda r: _of_surfaces(r, "k_conv")),
+    Group("flow of fans", "hconv", 0.6, _flow_of_fans, share=0.0),
 )
 
 

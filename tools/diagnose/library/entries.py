@@ -94,13 +94,7 @@ def scaled(
     """
     known = entry(name, at)
     size, found = known.cause.size.name, at.roles.failing(name) if groups is None else groups
-    own = known.shapes if at.first("speed") else ()
-
-    def follows(values: Callable[[Theta, Row], Values]) -> Callable[[Theta, Row], Values]:
-        return lambda theta, row: values({**theta, size: theta[size] * at.by_speed(row, theta, own[0].name)}, row)
-
     laws = {part: factors(paths, size, law) for part, paths in found.items()}
-    laws = {part: follows(values) for part, values in laws.items()} if own else laws
 
     def every(theta: Theta, row: Row) -> Values:
         return {path: value for values in laws.values() for path, value in values(theta, row).items()}
@@ -109,8 +103,8 @@ def scaled(
         def values(theta: Theta, row: Row) -> Values:
             return every({**theta, size: theta[size] * limit.gate(theta, row, at.ranges)}, row)
 
-        return Form(limit.name, shapes=(*own, *limit.shapes(at.ranges)), values=values, regime=limit.told)
+        return Form(limit.name, shapes=limit.shapes(at.ranges), values=values, regime=limit.told)
 
     if laws:
-        single = [Form(part, shapes=own, values=values) for part, values in laws.items()]
-        yield known.with_forms(weighed([Form(shapes=own, values=every)], single, [limited(x) for x in known.regimes]), **changes)
+        single = [Form(part, values=values) for part, values in laws.items()]
+        yield known.with_forms(weighed([Form(values=every)], single, [limited(x) for x in known.regimes]), **changes)
