@@ -193,10 +193,9 @@ def impacts(
             ends = (value - WIDE * sd, value + WIDE * sd)
             told[name] = findings.Impact(value=value, ci95=ends, unit=unit, what=what)
 
-    for i, s in enumerate(o.read):
-        if (mine := o.kind == i).any():
-            weights = channels.difference(s, 1.0) * mine / mine.sum()
-            add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
+    for _, s, mine in channels.compared(o):
+        weights = channels.difference(s, 1.0) * mine / mine.sum()
+        add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
     wrong = {o.campaign.sensor(name).kind for a in moved for name in (*a.formula.read, *a.formula.given)}
     loss = "loss" if wrong.isdisjoint(("torque", "speed")) else "apparent loss"
     for (name, unit), weights in zip(LOSS.items(), loss_means(o, ratios) or (), strict=False):
@@ -214,9 +213,8 @@ def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np
     torque, power = np.zeros(o.m), np.zeros(o.m)
     speed = next((s for s in o.campaign.sensors if s.kind == "speed" and ratios.get(_end(s))), None)
     ends = set[str]()
-    for i, s in enumerate(o.read):
-        mine = o.kind == i
-        if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)) or not mine.any():
+    for _, s, mine in channels.compared(o):
+        if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)):
             continue
         ends.add(_end(s))
         share = np.where(mine, ratios[_end(s)] * o.signs[s.name][o.row] / mine.sum(), 0.0)
@@ -265,8 +263,8 @@ def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Pla
         return {}
     extended = problem.shown(h.fit.look, machine)[own]
     found = {}
-    for i, s in enumerate(o.read):
-        rows = np.setdiff1d(np.flatnonzero(o.kind == i), problem.entries_aside)
+    for _, s, mine in channels.compared(o):
+        rows = np.setdiff1d(np.flatnonzero(mine), problem.entries_aside)
         left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
         if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
             before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)

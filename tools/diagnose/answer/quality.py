@@ -120,15 +120,13 @@ def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
         if abs(z) <= OFF * sd:
             continue
         factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
-        values = [path for path in factors if path in plant.place]
-        factor = factors[values[0]] if values else None
-        known: dict[str, Any] = {"paths": tuple(factors)}
-        if len(values) == 1:
-            place = plant.place[values[0]]
+        path, factor = next(iter(factors.items()))
+        known: dict[str, Any] = {}
+        if len(factors) == 1:
+            place = plant.place[path]
             file = float(plant.p[place])
-            known = {"paths": tuple(values), "file": file, "found": file * factors[values[0]]}
-            known["unit"] = plant.flat.parameters[place].unit
-        told.append(NuisanceOff(name=nuisance.name, z=z / sd, factor=factor, **known))
+            known = {"file": file, "found": file * factor, "unit": plant.flat.parameters[place].unit}
+        told.append(NuisanceOff(name=nuisance.name, z=z / sd, factor=factor, paths=tuple(factors), **known))
     return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 
@@ -166,9 +164,8 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
 
 def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     """Compared sensor -> p of what a hypothesis leaves in it."""
-    o = found.problem.data
-    own = {s.name: np.flatnonzero(o.kind == i) for i, s in enumerate(o.read)}
-    return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
+    own = channels.compared(found.problem.data)
+    return {s.name: p_adequacy(found, h, np.flatnonzero(mine)) for _, s, mine in own}
 
 
 def errors_as_filed(problem: Problem) -> dict[str, float]:

@@ -103,7 +103,7 @@ def causes(findings: Findings) -> list[Table]:
     listed = list_causes(findings)
     ranked = [(percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), c.id) for c in listed]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
-    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
+    joint = findings.hypotheses
     together = [
         (percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong")
         for k, h in enumerate(joint)

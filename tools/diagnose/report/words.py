@@ -49,7 +49,7 @@ def with_words(findings: Findings) -> Findings:
         cannot_be=_cannot_be(findings),
         data=_data(findings),
     )
-    wrong = [w for text in contradictions(findings) if (w := f"the result contradicts itself: {text}")]
+    wrong = [f"the result contradicts itself: {text}" for text in contradictions(findings)]
     warnings = tuple(dict.fromkeys((*wrong, *findings.warnings)))
     return findings.model_copy(update={"says": said, "warnings": warnings})
 
