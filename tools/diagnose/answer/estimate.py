@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
+from ....model.units import from_si, show_unit
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.fit import Fit, Vector
@@ -97,11 +98,8 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
 
 def convert(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
     """Values of a shape in the unit people read: degC and rpm."""
-    if shape.unit == "K" and shape.low > 150.0:
-        return "degC", [v - 273.15 for v in values]
-    if shape.unit == "rad/s":
-        return "rpm", [v * 30 / np.pi for v in values]
-    return shape.unit, list(values)
+    unit = "K (difference)" if shape.unit == "K" and shape.low <= 150.0 else shape.unit
+    return show_unit(unit), [from_si(v, unit) for v in values]
 
 
 def at_bound(value: float, low: float, high: float) -> Bound:
@@ -149,9 +147,8 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
 
 def first_test(campaign: Campaign, place: float) -> str:
     """The first test behind a place in the running order, which goes from 0 to 1, with its date; of logs the date."""
-    later = np.flatnonzero(campaign.progress >= place)
-    row = int(later[np.argmin(campaign.progress[later])]) if len(later) else int(np.argmax(campaign.progress))
-    test = int(campaign.test[row])
+    later = np.where(campaign.progress >= place, campaign.progress, np.inf)
+    test = int(campaign.test[np.argmin(later)])
     date = campaign.date[test]
     if campaign.names[test : test + 1] == ("",):  # of a log
         return date or f"span {test + 1} of {campaign.n_tests}"

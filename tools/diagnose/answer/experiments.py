@@ -133,9 +133,7 @@ def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
 
 
 def _checks(campaign: Campaign) -> Iterator[Experiment]:
-    thermometers = [s for s in campaign.read if s.kind.endswith("_temp")]
-    if thermometers:
-        bath = tuple(Check(s.name, BATH, BESIDE) for s in thermometers)
+    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp")):
         yield Experiment("bath", "all thermometers in one bath, at 20 and at 60 degC", checks=bath)
     torques = [s for s in campaign.sensors if s.kind == "torque"]
     if torques:

@@ -38,11 +38,9 @@ def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     nominal = _predicted(found.problem, found.null, o)
     counted = [(h.fit, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
     counted = counted or [(found.hypotheses[0].fit, 1.0)]
-    tables = np.array([_predicted(found.problem, fit, o) for fit, _ in counted])
-    w = np.array([p for _, p in counted])[:, None, None] * np.isfinite(tables)
-    total = w.sum(axis=0)
-    mean = (w * np.nan_to_num(tables)).sum(axis=0) / np.where(total > 0, total, 1.0)
-    return nominal, np.where(total > 0, mean, nominal)
+    tables = np.ma.masked_invalid([_predicted(found.problem, fit, o) for fit, _ in counted])
+    mean = np.ma.average(tables, axis=0, weights=[p for _, p in counted])
+    return nominal, np.where(np.ma.getmaskarray(mean), nominal, mean)
 
 
 def _observed(found: Found, points: Campaign) -> Observed:

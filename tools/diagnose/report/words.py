@@ -308,9 +308,7 @@ def _data(findings: Findings) -> tuple[str, ...]:
     """What is to be known of data and rig before any cause."""
     quality = findings.data_quality
     said = [phrases.gross(g) for g in quality.gross]
-    for v in quality.variance:
-        if v.ratio > SCATTER or v.ratio < 1 / SCATTER:
-            said.append(phrases.scatter(v))
+    said += [phrases.scatter(v) for v in quality.variance if not 1 / SCATTER <= v.ratio <= SCATTER]
     for channel, p in quality.adequacy.items():
         if p < ADEQUATE:
             said.append(f"What is left in {channel} is not noise ({phrases.p_value(p)}).")
