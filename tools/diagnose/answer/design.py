@@ -36,10 +36,8 @@ class Effects:
     @cached_property
     def places(self) -> Mapping[str, np.ndarray]:
         """Cause -> its candidates, the middle of its general form first."""
-        found: dict[str, list[int]] = {}
-        for k, c in enumerate(self.candidates):
-            found.setdefault(c.id, []).append(k)
-        return {name: np.array(own) for name, own in found.items()}
+        ids = np.array([c.id for c in self.candidates])
+        return {id: np.flatnonzero(ids == id) for id in dict.fromkeys(ids.tolist())}
 
     @cached_property
     def _gram(self) -> np.ndarray:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from ...show.columns import cell_text
 from ..answer.channels import ENDINGS
-from ..answer.evidence import ResidualMean
 from ..answer.findings import APART, Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
@@ -54,11 +53,9 @@ def tables(findings: Findings) -> list[Table]:
 
 def residuals(findings: Findings) -> list[Table]:
     """Means of what the calibrated rig leaves, in the tables and channels in which some stand out."""
-    grouped: dict[tuple[str, tuple[str, ...]], list[ResidualMean]] = {}
-    for r in findings.residuals:
-        grouped.setdefault((r.channel, r.by), []).append(r)
     found = []
-    for (channel, by), means in grouped.items():
+    for channel, by in dict.fromkeys((r.channel, r.by) for r in findings.residuals):
+        means = [r for r in findings.residuals if (r.channel, r.by) == (channel, by)]
         if not any(r.stands_out for r in means):
             continue
         cells = {r.cell: f"{r.mean:+.2g}{' !' if r.stands_out else ''} ({r.n})" for r in means}
