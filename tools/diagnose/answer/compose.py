@@ -88,9 +88,10 @@ def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
         return None
     beside = (e for h, _ in decision.members[findings.UNEXPLAINED] for e in h.extras if e.cause is None)
     own, told = next(beside), []
+    columns = own.size * own.of.columns[found.problem.own]
     for _, s, mine in channels.compared(found.problem.data):
         if s.name in own.of.channels:
-            rms = float(np.sqrt(np.mean(((own.size * own.of.columns[np.flatnonzero(mine)]) ** 2).sum(axis=1))))
+            rms = float(np.sqrt(np.mean((columns[mine] ** 2).sum(axis=1))))
             value = channels.difference(s, rms)
             one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
             told.append((rms / s.repeat_sd, one))

@@ -97,7 +97,7 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
 
 
 def convert(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
-    """Values of a shape in the unit people read: degC and rpm."""
+    """Values of a shape in the unit people read: degC and rpm; kelvins that may be few are a difference."""
     unit = "K (difference)" if shape.unit == "K" and shape.low <= 150.0 else shape.unit
     return show_unit(unit), [from_si(v, unit) for v in values]
 

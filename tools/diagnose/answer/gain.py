@@ -136,12 +136,12 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
     anew = problem.without(aside)
     scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
-    spread, look = [f for f in found.formulas if f in scattering], anew.look(found.null.look.z)
-    terms = {t.label: t for t in (*spreads(anew, look, spread, found.prior), *remainders(anew))}
+    spread, nominal = [f for f in found.formulas if f in scattering], anew.look(found.null.look.z)
+    terms = {t.label: t for t in (*spreads(anew, nominal, spread, found.prior), *remainders(anew))}
     known = np.setdiff1d(kept, anew.entries_aside)
 
     def left(fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
-        """What a fit leaves of them: by what lasts, and by what passes with a test or mounting, too (2, k)."""
+        """What a fit leaves of those held: by what lasts, and by what passes with a test or mounting, too (2, k)."""
         own = [Extra(terms[e.of.label], e.size) for e in extras if e.of.label in terms]
         look = anew.look(fit.look.z, fit.look.acting, fit.look.sd, fit.look.laws)
         noise = anew.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)

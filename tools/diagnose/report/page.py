@@ -159,10 +159,10 @@ def overview(findings: Findings) -> str:
     return svg(figure)
 
 
-def sides(values: Rows.Values) -> list[tuple[Sequence[float | None], str, str]]:
+def sides(values: Rows.Values) -> list[tuple[Array, str, str]]:
     """The models that readings are compared with: values, colour, word."""
-    found: list[tuple[Sequence[float | None], str, str]] = [(values.nominal, BEFORE, "calibrated model")]
-    return [*found, (values.extended, AFTER, "with the causes")] if values.extended else found
+    both = [(values.nominal, BEFORE, "calibrated model"), (values.extended, AFTER, "with the causes")]
+    return both if values.extended else both[:1]
 
 
 def views(found: Sequence[View]) -> str:
