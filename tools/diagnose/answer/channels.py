@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....scenarios.measured.table import Sensor
+from ..model.entries import Measured
 from .findings import Channel
 
 #: Kind of a sensor -> unit of a result, by how much its numbers are larger than SI, and what it measures in words.
@@ -67,6 +68,11 @@ def channel(sensor: Sensor) -> Channel:
         repeat_sd=difference(sensor, sensor.repeat_sd),
         offset_sd=difference(sensor, sensor.offset_sd),
     )
+
+
+def compared(o: Measured) -> list[tuple[int, Sensor, np.ndarray]]:
+    """Compared sensors that have readings at the ends of dwells: number, sensor, and which entries these are (m,)."""
+    return [(i, s, mine) for i, s in enumerate(o.read) if (mine := o.kind == i).any()]
 
 
 def levels(values: np.ndarray, gap: float = GAP) -> list[np.ndarray]:

@@ -84,14 +84,14 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
 def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
     """What the library lacks, by channel: beside the most probable hypothesis that holds it."""
     chance = decision.marginal.get(findings.UNEXPLAINED)
-    own = [e for h, _ in decision.members.get(findings.UNEXPLAINED, ()) for e in h.extras if e.cause is None]
-    if chance is None or chance.probability < LISTED or not own:
+    if chance is None or chance.probability < LISTED:
         return None
-    o, told = found.problem.data, []
-    for i, s in enumerate(o.read):
-        rows = np.flatnonzero(o.kind == i)
-        if s.name in own[0].of.channels and len(rows):
-            rms = float(np.sqrt(np.mean(((own[0].size * own[0].of.columns[rows]) ** 2).sum(axis=1))))
+    beside = (e for h, _ in decision.members[findings.UNEXPLAINED] for e in h.extras if e.cause is None)
+    own, told = next(beside), []
+    columns = own.size * own.of.columns[found.problem.own]
+    for _, s, mine in channels.compared(found.problem.data):
+        if s.name in own.of.channels:
+            rms = float(np.sqrt(np.mean((columns[mine] ** 2).sum(axis=1))))
             value = channels.difference(s, rms)
             one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
             told.append((rms / s.repeat_sd, one))
@@ -111,8 +111,8 @@ def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[fi
     effects, like = Effects(found.first.candidates, found.first.white), {c.id: c.like for c in library}
     told = []
     for cause in leading(decision)[:JUDGED]:
-        members = decision.members.get(cause, ())
-        sizes = [abs(a.t[0]) for h, _ in members[:1] for a in h.fit.look.acting if a.id == cause]
+        best, _ = decision.members[cause][0]
+        sizes = [abs(a.t[0]) for a in best.fit.look.acting if a.id == cause]
         told.append(find_alike(effects, cause, max([1.0, *sizes]), like))
     return tuple(s for s in told if s is not None)
 
@@ -124,7 +124,7 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     causes = (asked if len(asked) > 1 else [c for c in leading(decision) if c in known])[:JUDGED]
     if len(causes) < 2:
         return ()
-    weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
+    weights = {c: max(decision.marginal[c].probability, LEAST) for c in causes}
     tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
     made = simulate_design(found.problem, found.null.look, found.null.noise, found.first, causes, tried)
     return tuple(rank(made, weights)[:TRIED])

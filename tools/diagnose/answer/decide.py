@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, compress
 
 import numpy as np
 from scipy.special import chdtrc
@@ -99,15 +100,13 @@ def decide(found: Found) -> Decision:
         total = np.cumsum([j.chance.probability for j in wrong])
         answers = [first] if sure else wrong[: 1 + int(np.searchsorted(total, SURE * (1 - chances.nothing)))]
     leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and not h.extras)
-    members: dict[str, list[Member]] = {}
-    for h, p in zip(found.hypotheses, found.probabilities, strict=True):
-        for cause in (*h.causes, UNEXPLAINED) if beyond(h) else h.causes:
-            members.setdefault(cause, []).append((h, float(p)))
-    holds = {c: np.array([any(h is m for m, _ in own) for h in found.hypotheses]) for c, own in members.items()}
-    marginal = {c: chances.of(mine) for c, mine in holds.items()}
-    whole = {c: tuple(own) for c, own in members.items()}
+    weighed = list(zip(found.hypotheses, found.probabilities.tolist(), strict=True))
+    held = [(*h.causes, UNEXPLAINED) if beyond(h) else h.causes for h in found.hypotheses]
+    holds = {cause: np.array([cause in own for own in held]) for cause in dict.fromkeys(chain(*held))}
+    marginal = {cause: chances.of(mine) for cause, mine in holds.items()}
+    members = {cause: tuple(compress(weighed, mine)) for cause, mine in holds.items()}
     adequacy = p_adequacy(found, leader)
-    return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
+    return Decision(verdict, tuple(joints), tuple(answers), marginal, members, leader, chances.p_any, adequacy)
 
 
 def temper(found: Found) -> Found:
@@ -218,10 +217,7 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
     Whatever its scatter leaves free takes a degree of freedom.
     """
     problem, fit = found.problem, h.fit
-    kept = np.ones(problem.m, dtype=bool)
-    kept[problem.entries_aside] = False
-    if entries is not None:
-        kept &= np.isin(np.arange(problem.m), entries)
+    kept = np.setdiff1d(np.arange(problem.m) if entries is None else entries, problem.entries_aside)
     fixed = [t for t in fit.noise.terms if t.loose == 0 and t.columns is not None]
     V = fit.noise.covariance - sum((t.matrix for t in fixed), np.zeros((problem.m, problem.m)))
     known = np.concatenate([fit.look.by_sd, *(t.columns for t in fixed if t.columns is not None)], axis=1)

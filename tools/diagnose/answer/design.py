@@ -36,10 +36,8 @@ class Effects:
     @cached_property
     def places(self) -> Mapping[str, np.ndarray]:
         """Cause -> its candidates, the middle of its general form first."""
-        found: dict[str, list[int]] = {}
-        for k, c in enumerate(self.candidates):
-            found.setdefault(c.id, []).append(k)
-        return {name: np.array(own) for name, own in found.items()}
+        ids = np.array([c.id for c in self.candidates])
+        return {id: np.flatnonzero(ids == id) for id in dict.fromkeys(ids.tolist())}
 
     @cached_property
     def _gram(self) -> np.ndarray:
@@ -102,18 +100,18 @@ class Design:
         candidates: forms with their shapes
         effects: of one half width of each (M, k)
         covariance: without a cause (M, M)
-        parts: mask (M,) of the campaign, as "", and of each experiment
+        owner: experiment of each reading (M,), "" for those of the campaign
     """
 
     experiments: tuple[Experiment, ...]
     candidates: tuple[Acting, ...]
     effects: np.ndarray
     covariance: np.ndarray
-    parts: Mapping[str, np.ndarray]
+    owner: np.ndarray
 
     def seen(self, *done: str) -> Effects:
         """The causes in standard deviations, with some experiments done."""
-        rows = np.logical_or.reduce([self.parts[""], *(self.parts[name] for name in done)])
+        rows = np.isin(self.owner, ["", *done])
         return Effects(self.candidates, White.of(self.covariance[np.ix_(rows, rows)])(self.effects[rows]))
 
     def distances(self, *done: str) -> dict[Pair, float]:
@@ -149,8 +147,7 @@ def simulate_design(
     rows = [first.effects[:, places], *(e for _, _, e in runs.values()), *checked]
     owner = np.repeat(["", *runs, *(id for id, _ in checks)], [len(r) for r in rows])
     possible = tuple(e for e in experiments if not e.tests or e.id in runs)
-    parts = {name: owner == name for name in ["", *(e.id for e in possible)]}
-    return Design(possible, tuple(candidates), np.concatenate(rows), V, parts)
+    return Design(possible, tuple(candidates), np.concatenate(rows), V, owner)
 
 
 def _with_checks(
@@ -161,7 +158,7 @@ def _with_checks(
     found = block_diag(V, *(c.sd**2 * np.eye(len(c.true)) + c.standard**2 for c in checks))
     for sensor in dict.fromkeys(c.sensor for c in checks):
         shared = [np.full(len(c.true), offset_sd[sensor] if c.sensor == sensor else 0.0) for c in checks]
-        effect = np.concatenate([known.get(f"tolerance of {sensor}", np.zeros(m)), *shared])
+        effect = np.concatenate([known[f"tolerance of {sensor}"], *shared])
         both = np.outer(effect, effect)
         both[:m, :m] = 0.0  # known already
         found += both

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
+from ....model.units import from_si, show_unit
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.fit import Fit, Vector
@@ -96,12 +97,9 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
 
 
 def convert(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
-    """Values of a shape in the unit people read: degC and rpm."""
-    if shape.unit == "K" and shape.low > 150.0:
-        return "degC", [v - 273.15 for v in values]
-    if shape.unit == "rad/s":
-        return "rpm", [v * 30 / np.pi for v in values]
-    return shape.unit, list(values)
+    """Values of a shape in the unit people read: degC and rpm; kelvins that may be few are a difference."""
+    unit = "K (difference)" if shape.unit == "K" and shape.low <= 150.0 else shape.unit
+    return show_unit(unit), [from_si(v, unit) for v in values]
 
 
 def at_bound(value: float, low: float, high: float) -> Bound:
@@ -149,9 +147,8 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
 
 def first_test(campaign: Campaign, place: float) -> str:
     """The first test behind a place in the running order, which goes from 0 to 1, with its date; of logs the date."""
-    later = np.flatnonzero(campaign.progress >= place)
-    row = int(later[np.argmin(campaign.progress[later])]) if len(later) else int(np.argmax(campaign.progress))
-    test = int(campaign.test[row])
+    later = np.where(campaign.progress >= place, campaign.progress, np.inf)
+    test = int(campaign.test[np.argmin(later)])
     date = campaign.date[test]
     if campaign.names[test : test + 1] == ("",):  # of a log
         return date or f"span {test + 1} of {campaign.n_tests}"
@@ -193,10 +190,9 @@ def impacts(
             ends = (value - WIDE * sd, value + WIDE * sd)
             told[name] = findings.Impact(value=value, ci95=ends, unit=unit, what=what)
 
-    for i, s in enumerate(o.read):
-        if (mine := o.kind == i).any():
-            weights = channels.difference(s, 1.0) * mine / mine.sum()
-            add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
+    for _, s, mine in channels.compared(o):
+        weights = channels.difference(s, 1.0) * mine / mine.sum()
+        add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
     wrong = {o.campaign.sensor(name).kind for a in moved for name in (*a.formula.read, *a.formula.given)}
     loss = "loss" if wrong.isdisjoint(("torque", "speed")) else "apparent loss"
     for (name, unit), weights in zip(LOSS.items(), loss_means(o, ratios) or (), strict=False):
@@ -214,9 +210,8 @@ def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np
     torque, power = np.zeros(o.m), np.zeros(o.m)
     speed = next((s for s in o.campaign.sensors if s.kind == "speed" and ratios.get(_end(s))), None)
     ends = set[str]()
-    for i, s in enumerate(o.read):
-        mine = o.kind == i
-        if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)) or not mine.any():
+    for _, s, mine in channels.compared(o):
+        if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)):
             continue
         ends.add(_end(s))
         share = np.where(mine, ratios[_end(s)] * o.signs[s.name][o.row] / mine.sum(), 0.0)
@@ -265,8 +260,8 @@ def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Pla
         return {}
     extended = problem.shown(h.fit.look, machine)[own]
     found = {}
-    for i, s in enumerate(o.read):
-        rows = np.setdiff1d(np.flatnonzero(o.kind == i), problem.entries_aside)
+    for _, s, mine in channels.compared(o):
+        rows = np.setdiff1d(np.flatnonzero(mine), problem.entries_aside)
         left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
         if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
             before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)

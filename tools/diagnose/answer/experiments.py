@@ -6,8 +6,9 @@ further tests, logged warm-ups, and instruments read where the truth is known.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -132,9 +133,7 @@ def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
 
 
 def _checks(campaign: Campaign) -> Iterator[Experiment]:
-    thermometers = [s for s in campaign.read if s.kind.endswith("_temp")]
-    if thermometers:
-        bath = tuple(Check(s.name, BATH, BESIDE) for s in thermometers)
+    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp")):
         yield Experiment("bath", "all thermometers in one bath, at 20 and at 60 degC", checks=bath)
     torques = [s for s in campaign.sensors if s.kind == "torque"]
     if torques:
@@ -202,20 +201,19 @@ def planned_campaign(scenario: Scenario, card: Card, points: Campaign | None) ->
         raise DataError(f"{scenario.name}: no sensor is compared. Declare one under [sensors] in the rig file.")
     nominal = Nominal(drive_by(scenario, sensors))
     campaign = _grid(scenario, card, sensors, nominal) if points is None else points
-    read = tuple(s for s in sensors if s.role == "read" and s.name not in campaign.values)
-    campaign = replace(campaign, sensors=(*campaign.sensors, *read))
-    return _answered(campaign, nominal)
+    missing = [s for s in sensors if s.role == "read" and s.name not in campaign.values]
+    return _answered(campaign, missing, nominal)
 
 
 def _grid(scenario: Scenario, card: Card, sensors: tuple[Sensor, ...], nominal: Nominal) -> Campaign:
     """Speeds and loads in a mixed running order, both directions in each test where the rig's tests have them."""
     protocol, given = scenario.protocol, [s for s in sensors if s.role == "given"]
     directions = np.array([1.0, -1.0]) if protocol else np.zeros(1)
-    rows, n = len(directions), len(SPEEDS) * len(LOADS)
-    grid = [(a, b) for a in SPEEDS for b in LOADS]
+    grid = np.array(list(product(SPEEDS, LOADS)))
+    rows, n = len(directions), len(grid)
     shares = {"speed": 0, "torque": 1, "power": 1}
     order = (np.arange(n) * 7) % n  # neighbours of the grid are no neighbours in time
-    place = np.repeat([grid[k] for k in order], rows, axis=0)
+    place = np.repeat(grid[order], rows, axis=0)
     values = {}
     for s in given:
         full = nominal.value(s.reads) / s.sign(np.ones(1))[0]
@@ -230,9 +228,8 @@ def _grid(scenario: Scenario, card: Card, sensors: tuple[Sensor, ...], nominal: 
     return Campaign.of(name, given, values, test, direction=direction, dwell=np.tile(dwell, n), stop=stop)
 
 
-def _answered(campaign: Campaign, nominal: Nominal) -> Campaign:
-    """The campaign with steady readings of the model where it has none."""
-    missing = [s for s in campaign.read if s.name not in campaign.values]
+def _answered(campaign: Campaign, missing: Sequence[Sensor], nominal: Nominal) -> Campaign:
+    """The campaign with compared sensors that it lacks, which show what the model does in steady states."""
     found = {s.name: np.full(campaign.n, np.nan) for s in missing}
     given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
     for row in range(campaign.n):
@@ -241,4 +238,4 @@ def _answered(campaign: Campaign, nominal: Nominal) -> Campaign:
             found[s.name][row] = s.sign(campaign.direction)[row] * at[s.reads] if at is not None else np.nan
     if missing and not any(np.isfinite(column).any() for column in found.values()):
         raise DataError(f"{campaign.name}: the rig has no steady state at any of the points. Give milder ones.")
-    return replace(campaign, values={**campaign.values, **found})
+    return replace(campaign, sensors=(*campaign.sensors, *missing), values={**campaign.values, **found})

@@ -18,7 +18,7 @@ from ....scenarios.measured.table import Campaign
 from ..infer.evidence import split_error
 from ..infer.fit import Fit, Vector
 from ..infer.found import Extra, Found
-from ..infer.problem import Aside, Problem
+from ..infer.problem import Aside
 from ..infer.terms import remainders, spreads
 from ..infer.weigh import Options, Weighing
 from ..model.observe import Observed
@@ -134,38 +134,26 @@ def foresee(whole: Found, held: np.ndarray, options: Options) -> Foreseen:
     kept = np.setdiff1d(np.arange(problem.m), held)
     found = temper(Weighing(problem.only(kept), whole.formulas, options).glance())
     aside = frozenset(a if a.sensor else Aside(int(kept[a.number])) for a in found.problem.aside)
-    left = _Left(problem.without(aside), found, held)
+    anew = problem.without(aside)
+    scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
+    spread, nominal = [f for f in found.formulas if f in scattering], anew.look(found.null.look.z)
+    terms = {t.label: t for t in (*spreads(anew, nominal, spread, found.prior), *remainders(anew))}
+    known = np.setdiff1d(kept, anew.entries_aside)
+
+    def left(fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
+        """What a fit leaves of those held: by what lasts, and by what passes with a test or mounting, too (2, k)."""
+        own = [Extra(terms[e.of.label], e.size) for e in extras if e.of.label in terms]
+        look = anew.look(fit.look.z, fit.look.acting, fit.look.sd, fit.look.laws)
+        noise = anew.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
+        S = noise.covariance + look.jacobian / Vector(anew, look).precision @ look.jacobian.T
+        r = anew.measured - look.shown + look.jacobian @ look.x
+        return split_error(S, noise.passing, r, known, held)
+
     leader, weights = found.hypotheses[0], np.where(found.probabilities > COUNTS, found.probabilities, 0.0)
     counted = [(h, w) for h, w in zip(found.hypotheses, weights, strict=True) if w or h is leader]  # the leader first
-    errors = np.array([left.by(h.fit, h.extras) for h, _ in counted])
+    errors = np.array([left(h.fit, h.extras) for h, _ in counted])
     after = np.average(errors, axis=0, weights=[w for _, w in counted])
-    return Foreseen(held, {"before": left.by(found.null, ()), "after": after, "leading": errors[0]}, leader.causes)
-
-
-class _Left:
-    """What fits without some entries leave of them.
-
-    Args:
-        problem: with these entries
-        found: the search without them
-        held: their numbers (k,)
-    """
-
-    def __init__(self, problem: Problem, found: Found, held: np.ndarray) -> None:
-        self.problem, self.held = problem, held
-        self.kept = np.setdiff1d(np.arange(problem.m), [*held, *problem.entries_aside])
-        scattering = {e.of.formula for h in found.hypotheses for e in h.extras}
-        spread, look = [f for f in found.formulas if f in scattering], problem.look(found.null.look.z)
-        self.terms = {t.label: t for t in (*spreads(problem, look, spread, found.prior), *remainders(problem))}
-
-    def by(self, fit: Fit, extras: Sequence[Extra]) -> np.ndarray:
-        """By what lasts, and by what passes with a test or mounting, too (2, k)."""
-        own = [Extra(self.terms[e.of.label], e.size) for e in extras if e.of.label in self.terms]
-        look = self.problem.look(fit.look.z, fit.look.acting, fit.look.sd, fit.look.laws)
-        noise = self.problem.beside(tuple(e.term for e in own)).noise(look, fit.noise.scales)
-        S = noise.covariance + look.jacobian / Vector(self.problem, look).precision @ look.jacobian.T
-        r = self.problem.measured - look.shown + look.jacobian @ look.x
-        return split_error(S, noise.passing, r, self.kept, self.held)
+    return Foreseen(held, {"before": left(found.null, ()), "after": after, "leading": errors[0]}, leader.causes)
 
 
 def noise_floor(found: Found, sensor: int) -> float:
@@ -194,17 +182,15 @@ def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
     """Scheme -> the rows of each fold; only schemes with two folds or more."""
     small = c.n < SMALL
     most = FEW if small else FOLDS
-    single = c.n_tests <= most
     tests = [np.flatnonzero(c.test == k) for k in range(c.n_tests)]
     # tests next to each other go to different folds, so that each fold has the whole of the campaign's time
     mixed = [np.concatenate(tests[k::most]) for k in range(min(most, c.n_tests))]
-    found = {"leave-one-operating-point" if single else "leave-out-tests": tests if single else mixed}
-    for scheme, kind in () if small else (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
-        given = [s for s in c.given if s.kind == kind]
-        if given:
-            found[scheme] = channels.levels(np.abs(c.values[given[0].name]))
-    oils = np.array(c.oil)[c.test]
+    found = {"leave-one-operating-point" if c.n_tests <= most else "leave-out-tests": mixed}
     if not small:
+        for scheme, kind in (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
+            if given := c.driving(kind):
+                found[scheme] = channels.levels(np.abs(c.values[given.name]))
+        oils = np.array(c.oil)[c.test]
         found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
     return {
         name: folds
@@ -245,8 +231,8 @@ def target(o: Observed, sensor: int, rows: np.ndarray) -> np.ndarray:
     """What is regressed: a temperature over the room, another reading as it is."""
     s = o.read[sensor]
     values = o.campaign.values[s.name][rows]
-    room = next((r.name for r in o.given if r.kind == "ambient"), None)
-    return np.asarray(values - o.sensors[room][rows] if s.kind.endswith("_temp") and room else values)
+    room = o.campaign.driving("ambient")
+    return np.asarray(values - o.sensors[room.name][rows] if s.kind.endswith("_temp") and room else values)
 
 
 def fitted(X: np.ndarray, y: np.ndarray, kept: np.ndarray, ridge: float) -> np.ndarray:

@@ -28,10 +28,7 @@ def rows(found: Found, h: Hypothesis) -> Rows:
     null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
     spread = np.sqrt(loose_variance(h.fit))[own]
     told = {}
-    for i, s in enumerate(o.read):
-        mine = o.kind == i
-        if not mine.any():
-            continue
+    for i, s, mine in channels.compared(o):
         lines = o.over_rows(i, o.measured, null, leader)
         measured, nominal, extended = (array(channels.in_unit(s, line)) for line in lines)
         sd = channels.difference(s, float(np.median(spread[mine])))
@@ -75,9 +72,9 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
         effect = (fit.look.shown - problem.shown(fit.look, others))[problem.own]
-        ends = np.unique(o.kind[o.kind < len(o.read)])
-        best = max((int(i) for i in ends), key=lambda i: float(np.mean((effect / sd)[o.kind == i] ** 2)))
-        sensor, lines = o.read[best], o.over_rows(best, left + effect, left)
+        shares = (effect / sd) ** 2
+        best, sensor, _ = max(channels.compared(o), key=lambda one: float(np.mean(shares[one[2]])))
+        lines = o.over_rows(best, left + effect, left)
         before, after = (array(channels.difference(sensor, 1.0) * line) for line in lines)
         acts_on = acting.formula.cause.acts_on
         against = acts_on if acts_on in quantities else "order"
@@ -95,13 +92,13 @@ def views(found: Found) -> tuple[View, ...]:
     problem, o, first = found.problem, found.problem.data, found.first
     whole, e = found.null.linear(problem)
     V, r = whole.L @ whole.L.T, whole.L @ e
-    kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
+    compared = channels.compared(o)
     weights, prior = first.weights(found.prior), priors(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
-    for i in kinds if len(kinds) > 1 else ():
+    for _, s, ends in compared if len(compared) > 1 else ():
         mine = np.zeros(problem.m, dtype=bool)
-        mine[problem.own] = o.kind == i
+        mine[problem.own] = ends
         given = White.of(V[np.ix_(~mine, ~mine)])
         tie = given(V[np.ix_(~mine, mine)])
         white = White.of(V[np.ix_(mine, mine)] - tie.T @ tie)
@@ -112,7 +109,7 @@ def views(found: Found) -> tuple[View, ...]:
         total = np.logaddexp.reduce([np.logaddexp.reduce(logs), found.critical])
         chances = {c: float(np.exp(np.logaddexp.reduce(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
         ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])
-        s, rows = o.read[i], o.row[o.kind == i]
+        rows = o.row[ends]
         told.append(
             View(
                 channel=s.name,

@@ -121,7 +121,7 @@ def rank_experiments(
         if best.smallest < last.smallest + WORTH and best.gain < last.gain + WORTH:
             break
         together.append(best)
-    sizes = {name: library[name].size for name in design.seen().places}
+    sizes = {c.id: library[c.id].size for c in design.candidates}
     causes = [
         PlannedCause(id=n, size=s.name, usual=s.sd, unit=s.unit, visible=visible.visible(n), exposes=library[n].exposes)
         for n, s in sizes.items()

@@ -24,11 +24,10 @@ def predict(found: Found, points: Campaign) -> tuple[Prediction, ...]:
     """What the instruments will show at points, where the machine can be run."""
     read, told = found.problem.data.read, []
     tables = [list(map(channels.in_unit, read, table)) for table in simulate(found, points)]
-    for row in range(points.n):
+    stated = points.points > 0  # else a row that a test lacks
+    for row in np.flatnonzero(stated & np.isfinite(tables).all(axis=(0, 1))):
         both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
-        stated = points.points[row] > 0  # else a row that a test lacks
-        if stated and all(np.isfinite(v) for values in both for v in values.values()):
-            told.append(Prediction(point=str(int(points.points[row])), nominal=both[0], extended=both[1]))
+        told.append(Prediction(point=str(points.points[row]), nominal=both[0], extended=both[1]))
     return tuple(told)
 
 
@@ -38,11 +37,9 @@ def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     nominal = _predicted(found.problem, found.null, o)
     counted = [(h.fit, p) for h, p in zip(found.hypotheses, found.probabilities, strict=True) if p > COUNTS]
     counted = counted or [(found.hypotheses[0].fit, 1.0)]
-    tables = np.array([_predicted(found.problem, fit, o) for fit, _ in counted])
-    w = np.array([p for _, p in counted])[:, None, None] * np.isfinite(tables)
-    total = w.sum(axis=0)
-    mean = (w * np.nan_to_num(tables)).sum(axis=0) / np.where(total > 0, total, 1.0)
-    return nominal, np.where(total > 0, mean, nominal)
+    tables = np.ma.masked_invalid([_predicted(found.problem, fit, o) for fit, _ in counted])
+    mean = np.ma.average(tables, axis=0, weights=[p for _, p in counted])
+    return nominal, np.where(np.ma.getmaskarray(mean), nominal, mean)
 
 
 def _observed(found: Found, points: Campaign) -> Observed:

@@ -5,7 +5,6 @@ Gross readings, values far off, scatter against the card, and tables of means of
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
 from itertools import product
@@ -120,15 +119,13 @@ def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
         if abs(z) <= OFF * sd:
             continue
         factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
-        values = [path for path in factors if path in plant.place]
-        factor = factors[values[0]] if values else None
-        known: dict[str, Any] = {"paths": tuple(factors)}
-        if len(values) == 1:
-            place = plant.place[values[0]]
+        path, factor = next(iter(factors.items()))
+        known: dict[str, Any] = {}
+        if len(factors) == 1:
+            place = plant.place[path]
             file = float(plant.p[place])
-            known = {"paths": tuple(values), "file": file, "found": file * factors[values[0]]}
-            known["unit"] = plant.flat.parameters[place].unit
-        told.append(NuisanceOff(name=nuisance.name, z=z / sd, factor=factor, **known))
+            known = {"file": file, "found": file * factor, "unit": plant.flat.parameters[place].unit}
+        told.append(NuisanceOff(name=nuisance.name, z=z / sd, factor=factor, paths=tuple(factors), **known))
     return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 
@@ -137,9 +134,8 @@ def scatters(found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
     noise, told = h.fit.noise, []
     sensors = {f"readings of {s.name}": s for s in found.problem.data.campaign.sensors}
     for term, scale, sd in zip(noise.loose, noise.scales, scale_sds(found, h), strict=True):
-        s, card, ratio = sensors.get(term.name), found.problem.day_sd, float(np.exp(scale))
-        if s is not None:
-            card = channels.difference(s, s.repeat_sd)
+        s, ratio = sensors.get(term.name), float(np.exp(scale))
+        card = channels.difference(s, s.repeat_sd) if s else found.problem.day_sd
         low, high = (card * float(np.exp(scale + 1.96 * sd * sign)) for sign in (-1.0, 1.0))
         told.append(
             VarianceComponent(
@@ -166,9 +162,8 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
 
 def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     """Compared sensor -> p of what a hypothesis leaves in it."""
-    o = found.problem.data
-    own = {s.name: np.flatnonzero(o.kind == i) for i, s in enumerate(o.read)}
-    return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
+    own = channels.compared(found.problem.data)
+    return {s.name: p_adequacy(found, h, np.flatnonzero(mine)) for _, s, mine in own}
 
 
 def errors_as_filed(problem: Problem) -> dict[str, float]:
@@ -235,7 +230,9 @@ def average_residuals(found: Found) -> tuple[ResidualMean, ...]:
     sound = ~np.isin(np.arange(o.m), problem.entries_aside)
     groups, means = group_rows(o.campaign), []
     for names in TABLES:
-        for cell, rows in _cells(groups, names):
+        # a quantity that does not vary has no groups, and its tables no cells
+        for cell in product(*(groups.get(name, {}).items() for name in names)):
+            rows = reduce(np.intersect1d, (group for _, group in cell))
             for i, s in enumerate(o.read):
                 mine = np.flatnonzero(sound & (o.kind == i) & np.isin(o.row, rows))
                 if not len(mine):
@@ -246,7 +243,7 @@ def average_residuals(found: Found) -> tuple[ResidualMean, ...]:
                         channel=s.name,
                         unit=channels.unit_of_difference(s),
                         by=names,
-                        cell=cell,
+                        cell=tuple(name for name, _ in cell),
                         n=len(mine),
                         mean=channels.difference(s, mean),
                         sd=channels.difference(s, sd),
@@ -278,13 +275,3 @@ def _along(campaign: Campaign, sensor: Sensor) -> dict[str, np.ndarray]:
     joined = [np.concatenate([each[k] for k in part]) for part in parts]
     unit = channels.unit(sensor)
     return {f"{channels.difference(sensor, float(values[rows].mean())):.4g} {unit}": rows for rows in joined}
-
-
-def _cells(
-    groups: Mapping[str, Mapping[str, np.ndarray]], names: Sequence[str]
-) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
-    """Groups of one quantity, or of two against each other, with their rows; none where one does not vary."""
-    if any(name not in groups for name in names):
-        return
-    for cell in product(*(groups[name].items() for name in names)):
-        yield tuple(group for group, _ in cell), reduce(np.intersect1d, (rows for _, rows in cell))

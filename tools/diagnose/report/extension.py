@@ -155,7 +155,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
     with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
-    changed = None if form.spread else _changed(form, one.theta, parameters(with_parts))
+    changed = _changed(form, one.theta, parameters(with_parts))
     if not changed:
         return scenario, [f"{outside} {one.doc if form.values is None else 'It differs from test to test.'}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
@@ -163,8 +163,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     nets = [tuple(_renamed(port, names) for port in net) for net in form.connections]
     neutral = {f"{p.name}.{key}": value for p in form.parts for key, value in p.values.items()}
     values = {_renamed(path, names): value for path, value in (neutral | changed).items()}
-    kinds = {p.name: with_parts.types[p.type] for p in parts}
-    lossy = [name for name, kind in kinds.items() if takes_power(kind)]
+    lossy = [p.name for p in parts if takes_power(with_parts.types[p.type])]
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     oil = {path.rpartition(".")[0] for path in changed} & {n for n, own in scenario.entries.items() if "oil" in own}
     notes = [f"{one.told}: the values below are of the rig's own oil; others change alike."] if oil and oils > 1 else []
@@ -178,7 +177,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
 
 def _changed(form: Form, theta: Theta, base: Mapping[str, float]) -> dict[str, float] | None:
     """Values that a form changes in every test alike; None where it depends on the test or changes none."""
-    if form.values is None:
+    if form.values is None or form.spread:
         return None
     one, other = defaultdict[str, float](lambda: 300.0), defaultdict[str, float](lambda: 320.0)  # of any sensor
     rows = (Row(base, one), Row(base, other, 1.0, -1.0, 55.0, 0.7, 1.0))
@@ -214,15 +213,14 @@ def values(found: Found, z: np.ndarray) -> dict[str, float]:
 
 def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrated, ...]:
     """Values that the data moved, in the units of the rig file."""
-    known, plant, told = setting.scenario.settable(), found.problem.data.plant, []
-    nominal, extended = values(found, found.null.look.z), values(found, h.fit.look.z)
-    for path, value in nominal.items():
+    known, z, told = setting.scenario.settable(), found.null.look.z, []
+    states = [values(found, each) for each in (0 * z, z, h.fit.look.z)]
+    for path in states[0]:
         if path in known:
             unit = known[path].unit
-            file = float(plant.p[plant.place[path]])
-            shown = [float(from_si(v, unit)) for v in (file, value, extended[path])]
-            causes = shown[2] if h.causes else None
-            told.append(Calibrated(path=path, unit=unit, file=shown[0], nominal=shown[1], extended=causes))
+            file, nominal, extended = (from_si(state[path], unit) for state in states)
+            causes = extended if h.causes else None
+            told.append(Calibrated(path=path, unit=unit, file=file, nominal=nominal, extended=causes))
     return tuple(told)
 
 

@@ -16,6 +16,7 @@ from ...show.drawing import COLOURS, empty, legend, svg
 from ..answer.channels import levels
 from ..answer.evidence import Picture, Rows, View
 from ..answer.findings import Findings
+from ..answer.numbers import Array
 from . import phrases, tables
 from .phrases import name_of
 
@@ -31,9 +32,8 @@ MOST = 5000
 BEFORE = COLOURS[1]
 #: Colour of residuals of the extended rig.
 AFTER = COLOURS[0]
-#: Direction -> its mark.
-MARKS = {1: "o", -1: "^", 0: "s"}
-DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
+#: Direction -> its mark and its name.
+MARKS = {1: ("o", "direction +1"), -1: ("^", "direction -1"), 0: ("s", "")}
 #: Readings that are drawn in a static picture, at most.
 DRAWN = 600
 #: More than these groups of readings have no line through their means.
@@ -122,13 +122,13 @@ def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> li
 def picture(findings: Findings, found: Picture) -> Figure:
     """What is left in a channel against the quantity that a cause acts on, without and with the cause."""
     quantity = findings.rows.quantities[found.quantity]
-    x, direction = _numbers(quantity.values), np.array(findings.rows.direction or [0] * len(found.before))
+    direction = findings.rows.direction
     sd = rows.sd if (rows := findings.rows.channels.get(found.channel)) else None
     figure, panels = empty(10.0, 3.4, 1, 2, sharex=True, sharey=True)
     sides = (("without this cause", found.before, BEFORE), ("with this cause", found.after, AFTER))
     for panel, (title, values, colour) in zip(panels, sides, strict=True):
         _band(panel, sd)
-        _residuals(panel, x, _numbers(values), direction, colour)
+        _residuals(panel, _numbers(quantity.values), _numbers(values), direction, colour)
         panel.set_title(title)
         _along(panel, quantity)
     panels[0].set_ylabel(_ordinate(findings, found.channel))
@@ -143,7 +143,6 @@ def overview(findings: Findings) -> str:
     axes = [q for q in rows.quantities.values() if len(set(q.values) - {None}) > 1]
     if not rows.channels or not axes:
         return ""
-    direction = np.array(rows.direction or [0] * len(axes[0].values))
     size = max(3.0 * len(axes), 5.0), 2.4 * len(rows.channels) + 0.4
     figure, panels = empty(*size, len(rows.channels), len(axes), sharex="col", sharey="row")
     for i, (name, values) in enumerate(rows.channels.items()):
@@ -152,7 +151,7 @@ def overview(findings: Findings) -> str:
             _band(panel, values.sd)
             for model, colour, word in sides(values):
                 left = _numbers(values.measured) - _numbers(model)
-                _residuals(panel, _numbers(axis.values), left, direction, colour, word)
+                _residuals(panel, _numbers(axis.values), left, rows.direction, colour, word)
             _along(panel, axis)
             panel.label_outer()
         line[0].set_ylabel(_ordinate(findings, name))
@@ -160,10 +159,10 @@ def overview(findings: Findings) -> str:
     return svg(figure)
 
 
-def sides(values: Rows.Values) -> list[tuple[Sequence[float | None], str, str]]:
+def sides(values: Rows.Values) -> list[tuple[Array, str, str]]:
     """The models that readings are compared with: values, colour, word."""
-    found: list[tuple[Sequence[float | None], str, str]] = [(values.nominal, BEFORE, "calibrated model")]
-    return [*found, (values.extended, AFTER, "with the causes")] if values.extended else found
+    both = [(values.nominal, BEFORE, "calibrated model"), (values.extended, AFTER, "with the causes")]
+    return both if values.extended else both[:1]
 
 
 def views(found: Sequence[View]) -> str:
@@ -173,8 +172,7 @@ def views(found: Sequence[View]) -> str:
         return ""
     figure, panels = empty(10.0, 2.2 * len(drawn) + 0.4, len(drawn), 1, sharex=True)
     for panel, view in zip(panels, drawn, strict=True):
-        direction = _numbers(view.direction) if view.direction else np.zeros(len(view.deviation))
-        _residuals(panel, _numbers(view.order), _numbers(view.deviation), direction, COLOURS[0])
+        _residuals(panel, _numbers(view.order), _numbers(view.deviation), view.direction, COLOURS[0])
         panel.set_ylabel(f"{view.channel} [{phrases.SHOWN.get(view.unit, view.unit)}]")
         panel.set_title(view.asks)
     panels[-1].set_xlabel("running order")
@@ -189,18 +187,17 @@ def _band(panel: Axes, sd: float | None) -> None:
         panel.axhspan(-2 * sd, 2 * sd, color="#eeeeee", zorder=0)
 
 
-def _residuals(panel: Axes, x: np.ndarray, y: np.ndarray, direction: np.ndarray, colour: str, word: str = "") -> None:
-    """Points by direction, and a line through the means of groups."""
+def _residuals(panel: Axes, x: np.ndarray, y: np.ndarray, direction: Array, colour: str, word: str = "") -> None:
+    """Points by direction, where there is any, and a line through the means of groups."""
     panel.axhline(0, color="#888888", linewidth=1)
-    thin = slice(None, None, -(-len(x) // DRAWN))
-    for way, mark in MARKS.items():
-        mine = (direction[thin] == way) & np.isfinite(x[thin]) & np.isfinite(y[thin])
+    ways = np.array(direction or [0] * len(x))
+    drawn = (np.arange(len(x)) % -(-len(x) // DRAWN) == 0) & np.isfinite(x) & np.isfinite(y)
+    for way, (mark, name) in MARKS.items():
+        mine = drawn & (ways == way)
         if mine.any():
-            label = ", ".join(filter(None, (word, DIRECTIONS[way])))
+            label = ", ".join(filter(None, (word, name)))
             face = colour if way >= 0 else "none"
-            panel.plot(
-                x[thin][mine], y[thin][mine], mark, color=colour, markerfacecolor=face, markersize=4, label=label
-            )
+            panel.plot(x[mine], y[mine], mark, color=colour, markerfacecolor=face, markersize=4, label=label)
     _trend(panel, x, y, colour)
 
 

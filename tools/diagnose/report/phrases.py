@@ -129,10 +129,8 @@ def size(found: Cause) -> str:
 
 def impact(found: Impact) -> str:
     """A mean change with its interval: oil temperature 3.2 K higher (2.9 to 3.5)."""
-    low, high = sorted(abs(v) for v in found.ci95)
-    more = "higher" if found.value >= 0 else "lower"
-    if found.ci95[0] * found.ci95[1] <= 0:
-        low, high = found.ci95 if found.value >= 0 else (-found.ci95[1], -found.ci95[0])
+    more, sign = ("higher", 1) if found.value >= 0 else ("lower", -1)
+    low, high = sorted(sign * v for v in found.ci95)
     value = with_unit(abs(found.value), found.unit, 2)
     return f"{found.what} {value} {more} ({number(low, 2)} to {number(high, 2)})"
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from ...show.columns import cell_text
 from ..answer.channels import ENDINGS
-from ..answer.evidence import ResidualMean
 from ..answer.findings import APART, Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
@@ -54,11 +53,9 @@ def tables(findings: Findings) -> list[Table]:
 
 def residuals(findings: Findings) -> list[Table]:
     """Means of what the calibrated rig leaves, in the tables and channels in which some stand out."""
-    grouped: dict[tuple[str, tuple[str, ...]], list[ResidualMean]] = {}
-    for r in findings.residuals:
-        grouped.setdefault((r.channel, r.by), []).append(r)
     found = []
-    for (channel, by), means in grouped.items():
+    for channel, by in dict.fromkeys((r.channel, r.by) for r in findings.residuals):
+        means = [r for r in findings.residuals if (r.channel, r.by) == (channel, by)]
         if not any(r.stands_out for r in means):
             continue
         cells = {r.cell: f"{r.mean:+.2g}{' !' if r.stands_out else ''} ({r.n})" for r in means}
@@ -103,7 +100,7 @@ def causes(findings: Findings) -> list[Table]:
     listed = list_causes(findings)
     ranked = [(percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), c.id) for c in listed]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
-    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
+    joint = findings.hypotheses
     together = [
         (percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong")
         for k, h in enumerate(joint)

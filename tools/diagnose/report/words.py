@@ -49,7 +49,7 @@ def with_words(findings: Findings) -> Findings:
         cannot_be=_cannot_be(findings),
         data=_data(findings),
     )
-    wrong = [w for text in contradictions(findings) if (w := f"the result contradicts itself: {text}")]
+    wrong = [f"the result contradicts itself: {text}" for text in contradictions(findings)]
     warnings = tuple(dict.fromkeys((*wrong, *findings.warnings)))
     return findings.model_copy(update={"says": said, "warnings": warnings})
 
@@ -308,9 +308,7 @@ def _data(findings: Findings) -> tuple[str, ...]:
     """What is to be known of data and rig before any cause."""
     quality = findings.data_quality
     said = [phrases.gross(g) for g in quality.gross]
-    for v in quality.variance:
-        if v.ratio > SCATTER or v.ratio < 1 / SCATTER:
-            said.append(phrases.scatter(v))
+    said += [phrases.scatter(v) for v in quality.variance if not 1 / SCATTER <= v.ratio <= SCATTER]
     for channel, p in quality.adequacy.items():
         if p < ADEQUATE:
             said.append(f"What is left in {channel} is not noise ({phrases.p_value(p)}).")
