@@ -109,27 +109,17 @@ class Plant:
             thermal=np.array([float(q.unit == "K") for q in unknowns]),
         )
 
-    @staticmethod
-    def of(
-        spec: Spec,
-        additions: Iterable[Added],
-        knobs: Sequence[str],
-        given: Sequence[str],
-        shown: Sequence[str],
-        tried: Sequence[str] = (),
-    ) -> Plant:
-        """The superset of a rig, driven as the campaign drives it, and what causes and nuisances add; see the class.
 
-        Raises:
-            GearheatError: the superset has no sound equations
-        """
-        flat, own = flatten(assemble(superset(spec, additions))), {part.name for part in spec.parts}
-        added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
-        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown, tried)
+def with_additions(spec: Spec, additions: Iterable[Added], knobs: Collection[str]) -> FlatModel:
+    """The equations of a rig, driven as the campaign drives it, with what causes and nuisances add.
 
+    Of the values of the additions that are no knobs, 0 and 1 are numbers in it, and equal ones of a name are one.
 
-def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
-    """The model with parameters that nothing changes: 0 and 1 are numbers in it, and equal ones of a name are one."""
+    Raises:
+        GearheatError: the superset has no sound equations
+    """
+    flat, own = flatten(assemble(superset(spec, additions))), {part.name for part in spec.parts}
+    fixed = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own} - set(knobs)
     first: dict[tuple[str, float], Any] = {}
     pairs = [(symbol, q) for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True) if q.name in fixed]
     if not pairs:
