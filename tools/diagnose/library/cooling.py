@@ -49,7 +49,8 @@ def causes(at: Context) -> Iterator[Cause]:
 def _conducting(at: Context, name: str, ports: Sequence[str], parts: Sequence[str]) -> Cause:
     """A cause of the table: an extra conductance from some ports to the room, or parts that conduct otherwise."""
     known, rise = entry(name, at), at.ranges.rise
-    forms = Extras(known.part, at).conductors(ports, known.shapes, known.regimes)
+    extras, bodies = Extras(known.part, at), [port.partition(".")[0] for port in ports]
+    forms = extras.forms(extras.conductors(ports), bodies, known.shapes, known.regimes)
     cause = known.with_forms(no_less(forms, sum(at.ranges.powers.get(part, 0.0) for part in parts) / rise))
     return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / rise)
 
@@ -120,8 +121,7 @@ def humidity(at: Context, ports: Sequence[str]) -> Cause:
     def follows(theta: Theta, row: Row) -> Theta:
         return {**theta, "G_ref": theta["G_ref"] * (row.humidity - theta["neutral"]) / HUMIDITY_SPAN}
 
-    made = [extras.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
-    return known.with_forms([extras.with_parts(made, known.shapes, as_keys=follows)])
+    return known.with_forms([extras.with_parts(extras.conductors(ports), known.shapes, as_keys=follows)])
 
 
 def fan(at: Context) -> Iterator[Cause]:

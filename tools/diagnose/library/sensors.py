@@ -141,12 +141,8 @@ class _Instruments:
         high = max(kind.most * self.typical, 8 * sd)
         return Size("error", kind.unit, doc, sd, -high if signed else 0.0, high)
 
-    def forms(self, modes: Sequence[Mode], size: str = "error") -> tuple[Form, ...]:
-        """Each mode of each instrument of the kind; instruments share the weight."""
-        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
-        return tuple(self._form(sensor, way, size) for sensor, way in pairs)
-
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
+        """One mode of one instrument of the kind; instruments share the weight."""
         scale = 1.0 if size == "gain" else self.scale[sensor.name]
         form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
         name = ", ".join(filter(None, (one_of(sensor, self.own), mode.name)))
@@ -164,11 +160,12 @@ class _Instruments:
         """
         said, id = TABLE[f"sensor.*.{key}"], f"sensor.{self.name}.{key}"
         size = size or self.size(**said["size"])
+        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
         return Cause(
             NAMES.get(id, id),
             said["doc"].format(self.kind.words),
             size,
-            self.forms(modes, size.name),
+            tuple(self._form(sensor, way, size.name) for sensor, way in pairs),
             said.get("exposes", self.kind.calibrate),
             acts_on=acts_on or said.get("acts_on", ""),
             common=said.get("common", 1.0),
@@ -204,10 +201,9 @@ class _Instruments:
 
     def frozen(self, read: Sequence[Sensor]) -> Cause:
         """A reading that no longer moves."""
-        ranges = self.at.ranges
         forms = []
         for s in read:
-            low, high = (bound.get(s.name, 0.0) for bound in (ranges.low, ranges.high))
+            low, high = (bound.get(s.name, 0.0) for bound in (self.at.ranges.low, self.at.ranges.high))
             held = Shape("held", self.kind.unit, "what it keeps showing", min(low, high - 1e-6), high)
             form = wrong(s, "share", lambda theta, row, value: since(theta, row) * (theta["held"] - value))
             forms.append(
