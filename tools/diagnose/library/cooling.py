@@ -12,7 +12,7 @@ from ....model.parts.free_form import step
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, beside_own_law, linear, no_less, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, no_less, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -61,7 +61,7 @@ def emissivity(at: Context) -> Iterator[Cause]:
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in paths)
     low, high = min(SHINY / brightest - 1, -BRIGHTER), max(1 / brightest - 1, BRIGHTER)
     size = replace(entry("cooling.emissivity", at).cause.size, low=low, high=high)
-    yield from scaled(at, "cooling.emissivity", paths, linear, size=size)
+    yield from scaled(at, "cooling.emissivity", paths, lambda change: 1 + change, size=size)
 
 
 def contact(at: Context) -> Cause:

@@ -81,7 +81,7 @@ class Extras:
 
     def conductors(self, ports: Sequence[str]) -> list[Made]:
         """Conductances from bodies to the room, and what they meet."""
-        keys, made = ("w_ref", "tau_ref", "c", "forward", "backward", "T_on", "T_side", "T_width"), []
+        keys, made = ("w_ref", "tau_ref", "c", "forward", "backward", "T_on", "T_side", "T_width"), list[Made]()
         values = {key: value for key, value in self.open().items() if key in keys}
         values |= {"G_ref": 0.0, "dT_ref": self.ranges.rise, "e": 0.0}
         for k, port in enumerate(ports):

@@ -116,8 +116,7 @@ class Filter:
         self.moments = False
         #: Steps of a sample.
         self.parts = 1
-        self.nx = plant.nx
-        self.u_at = [plant.u_place[path] for path in plant.given]
+        self.nx = len(plant.flat.states)
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
@@ -221,7 +220,7 @@ class Filter:
             noise=self.given_sd,
             input_of=np.array([self.given.index(o.sensor) if o.sensor in self.given else -1 for o in self.knobs]),
             gain=np.array([o.gain for o in self.knobs], dtype=np.int64),
-            u_at=np.array(self.u_at),
+            u_at=np.array([self.plant.u_place[path] for path in self.plant.given]),
             state_of=self.state_of,
             x0=x,
             z0=self.plant.flat.starts("algebraic"),

@@ -24,15 +24,6 @@ Slope = dict[int, np.ndarray]
 _Changes = dict[str, tuple[tuple[str, bytes], ...]]
 
 
-def by_part(values: Mapping[str, np.ndarray]) -> _Changes:
-    """Changes by path (n,)."""
-    found: _Changes = {}
-    for path, value in values.items():
-        part = path.partition(".")[0]
-        found[part] = (*found.get(part, ()), (path, value.tobytes()))
-    return found
-
-
 def total(terms: Sequence[tuple[np.ndarray | float, Slope]]) -> Slope:
     """Slopes, each times its weight."""
     found: Slope = {}
@@ -201,8 +192,11 @@ class _Look:
         key, untouched = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
         if not untouched or (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
-            pairs = zip(formula.paths, value, strict=False)
-            changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
+            changes: _Changes = {}
+            for path, v in zip(formula.paths, value, strict=False):
+                if not np.array_equal(v, self._base(path)):
+                    part = path.partition(".")[0]
+                    changes[part] = (*changes.get(part, ()), (path, v.tobytes()))
             known = by_t[:, :, 0].copy(), changes
             if untouched and not formula.bases:
                 self.o.neutral[key] = known
