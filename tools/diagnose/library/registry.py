@@ -89,7 +89,7 @@ def _others(files: Iterable[Path], wrong: Problems) -> Iterator[tuple[str, Famil
         except Exception as error:  # a package may fail in any way
             wrong.append(f"package {entry.name} ({entry.value}): cannot be loaded: {type(error).__name__}: {error}.")
     for path in files:
-        if family := wrong.of(partial(_from_file, path)):
+        if (family := wrong.of(partial(_from_file, path))) is not None:
             yield path.name, family
 
 
