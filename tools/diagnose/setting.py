@@ -25,7 +25,7 @@ from .library.forms import Context
 from .library.registry import library
 from .model.formula import Formula
 from .model.observe import Observed
-from .model.plant import Plant
+from .model.plant import Plant, with_additions
 
 #: Outputs of a part that say what it does.
 DOES = ("P_loss", "Q_flow", "Q_flow_convection", "Q_flow_radiation")
@@ -97,7 +97,7 @@ def setting(
     added = [(one.parts, one.connections) for one in (*(f.form for f in formulas), *known)]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
-    plant = Plant.of(spec, added, tuple(knobs), [s.reads for s in data.given], shown, tried)
+    plant = Plant(with_additions(spec, added, knobs), tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     return Setting(scenario, spec, causes, formulas, Problem(observed, card.day_cooling_sd))
 

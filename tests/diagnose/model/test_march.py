@@ -21,7 +21,7 @@ from gearheat.tools.diagnose.model import march as marching
 from gearheat.tools.diagnose.model.formula import Formula
 from gearheat.tools.diagnose.model.march import STEADY, Phases, march
 from gearheat.tools.diagnose.model.observe import Observed
-from gearheat.tools.diagnose.model.plant import Plant
+from gearheat.tools.diagnose.model.plant import Plant, with_additions
 
 FOLDER = Path(marching.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
@@ -60,8 +60,9 @@ def planetary() -> tuple[Plant, Campaign, list[Formula]]:
     knobs = dict.fromkeys(["gear_set.k_mu", "oil.c_p", *(p for f in known for p in f.paths)])
     given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
     tried = tuple(dict.fromkeys(path for f in known for path in f.sized))
+    added = [(f.form.parts, f.form.connections) for f in known]
     return (
-        Plant.of(scenario.spec, [(f.form.parts, f.form.connections) for f in known], tuple(knobs), given, shown, tried),
+        Plant(with_additions(scenario.spec, added, knobs), tuple(knobs), given, shown, tried),
         data,
         known,
     )
@@ -210,6 +211,6 @@ def test_a_steady_state_at_the_steep_middle_of_a_thermostat_is_met(tmp_path: Pat
     path.write_text("\n".join([",".join(values), *[",".join(f"{v:.6f}" for v in values.values())] * 2]))
     data = read_campaign(path, scenario, Card())
     given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
-    plant = Plant.of(scenario.spec, (), ("housing.C",), given, shown)
+    plant = Plant(with_additions(scenario.spec, (), ()), ("housing.C",), given, shown)
     found = Observed(plant, data, (), {}, {}).shown_by(np.zeros(0), ())
     assert found == pytest.approx(np.repeat([state[name][0] for name in shown], 2), abs=1e-3)

@@ -204,5 +204,4 @@ class Ranges:
 
 def as_array(value: Num, n: int) -> np.ndarray:
     """What a formula gives for n rows as an array of n: numbers, arrays or CasADi numbers."""
-    flat = value.full().ravel() if isinstance(value, ca.DM) else np.asarray(value, dtype=float).ravel()
-    return np.broadcast_to(flat, n)
+    return np.broadcast_to(np.asarray(value, dtype=float).ravel(), n)

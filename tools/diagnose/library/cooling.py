@@ -12,7 +12,7 @@ from ....model.parts.free_form import step
 from .cause import Cause, Form, Row, Theta, Values
 from .entries import entry, scaled
 from .extras import Extras
-from .forms import SIDE, Context, Regime, beside_own_law, linear, no_less, weighed
+from .forms import SIDE, Context, Regime, beside_own_law, no_less, weighed
 
 #: Change of relative humidity at which the size of its effect is stated [1].
 HUMIDITY_SPAN = 0.15
@@ -49,7 +49,8 @@ def causes(at: Context) -> Iterator[Cause]:
 def _conducting(at: Context, name: str, ports: Sequence[str], parts: Sequence[str]) -> Cause:
     """A cause of the table: an extra conductance from some ports to the room, or parts that conduct otherwise."""
     known, rise = entry(name, at), at.ranges.rise
-    forms = Extras(known.part, at).conductors(ports, known.shapes, known.regimes)
+    extras, bodies = Extras(known.part, at), [port.partition(".")[0] for port in ports]
+    forms = extras.forms(extras.conductors(ports), bodies, known.shapes, known.regimes)
     cause = known.with_forms(no_less(forms, sum(at.ranges.powers.get(part, 0.0) for part in parts) / rise))
     return beside_own_law(cause, at, {part: (part,) for part in parts}, 1 / rise)
 
@@ -60,7 +61,7 @@ def emissivity(at: Context) -> Iterator[Cause]:
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in paths)
     low, high = min(SHINY / brightest - 1, -BRIGHTER), max(1 / brightest - 1, BRIGHTER)
     size = replace(entry("cooling.emissivity", at).cause.size, low=low, high=high)
-    yield from scaled(at, "cooling.emissivity", paths, linear, size=size)
+    yield from scaled(at, "cooling.emissivity", paths, lambda change: 1 + change, size=size)
 
 
 def contact(at: Context) -> Cause:
@@ -120,8 +121,7 @@ def humidity(at: Context, ports: Sequence[str]) -> Cause:
     def follows(theta: Theta, row: Row) -> Theta:
         return {**theta, "G_ref": theta["G_ref"] * (row.humidity - theta["neutral"]) / HUMIDITY_SPAN}
 
-    made = [extras.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
-    return known.with_forms([extras.with_parts(made, known.shapes, as_keys=follows)])
+    return known.with_forms([extras.with_parts(extras.conductors(ports), known.shapes, as_keys=follows)])
 
 
 def fan(at: Context) -> Iterator[Cause]:

@@ -79,14 +79,16 @@ class Extras:
         nets = ((f"{name}.oil", roles.oil_heat), (f"{name}.inner", inner), (f"{name}.outer", outer))
         return PartSpec(name, "ExtraHeat", self.open()), (*nets, (f"{name}.reading", roles.reading))
 
-    def conductor(self, port: str, number: int, of: int) -> Made:
-        """A conductance from a body to the room, and what it meets."""
-        name, room = self._name(number, of), self.roles.room_of(port)
-        keys = ("w_ref", "tau_ref", "c", "forward", "backward", "T_on", "T_side", "T_width")
+    def conductors(self, ports: Sequence[str]) -> list[Made]:
+        """Conductances from bodies to the room, and what they meet."""
+        keys, made = ("w_ref", "tau_ref", "c", "forward", "backward", "T_on", "T_side", "T_width"), list[Made]()
         values = {key: value for key, value in self.open().items() if key in keys}
         values |= {"G_ref": 0.0, "dT_ref": self.ranges.rise, "e": 0.0}
-        nets = ((f"{name}.a", port), (f"{name}.b", f"{room}.floor"), (f"{name}.reading", self.roles.reading))
-        return PartSpec(name, "ExtraConductor", values), nets
+        for k, port in enumerate(ports):
+            name, room = self._name(k, len(ports)), self.roles.room_of(port)
+            nets = ((f"{name}.a", port), (f"{name}.b", f"{room}.floor"), (f"{name}.reading", self.roles.reading))
+            made.append((PartSpec(name, "ExtraConductor", values), nets))
+        return made
 
     def losses(
         self,
@@ -106,21 +108,14 @@ class Extras:
             heats: port that takes the oil's share of the heat, where it is not the oil
         """
         made = [self.loss(place, k, len(places), heats) for k, place in enumerate(places)]
-        kept = tuple(s for s in shapes if s.name != "b" or all(place.lubricant for place in places))
+        kept = [s for s in shapes if s.name != "b" or all(place.lubricant for place in places)]
         return self.forms(made, [place.name for place in places], kept, limits, as_keys)
-
-    def conductors(
-        self, ports: Sequence[str], shapes: Iterable[Shape], limits: Sequence[Regime] = ()
-    ) -> tuple[Form, ...]:
-        """Conductances to the room from where heat leaves the bodies; forms as of `losses`."""
-        made = [self.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
-        return self.forms(made, [port.partition(".")[0] for port in ports], tuple(shapes), limits)
 
     def forms(
         self,
         made: Sequence[Made],
         names: Sequence[str],
-        shapes: tuple[Shape, ...],
+        shapes: Sequence[Shape],
         limits: Sequence[Regime] = (),
         as_keys: Keys | None = None,
     ) -> tuple[Form, ...]:

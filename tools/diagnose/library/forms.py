@@ -13,9 +13,6 @@ from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 
-#: What changes values of the machine.
-Changes = Callable[[Theta, Row], Values]
-
 #: Share of a cause's prior of the forms that act in one of several parts only.
 ONE_PLACE = 0.5
 #: The same beside regimes.
@@ -222,7 +219,7 @@ def weighed(general: Sequence[Form], single: Sequence[Form] = (), sides: Sequenc
 Paths = Iterable[str] | Mapping[str, float]
 
 
-def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Changes:
+def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Callable[[Theta, Row], Values]:
     """Values times the factor that a law gives for a size by its name."""
     exponents = paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
     return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
@@ -254,8 +251,3 @@ def beside_own_law(cause: Cause, at: Context, places: Mapping[str, Sequence[str]
     law = weighed([form(paths, BY_LAW)], [form((name,), f"{name}, {BY_LAW}") for name in paths])
     groups = ((1 - OWN_LAW, cause.forms), (OWN_LAW, law))
     return replace(cause, forms=tuple(replace(f, weight=s * f.weight) for s, forms in groups for f in forms))
-
-
-def linear(size: Num) -> Num:
-    """A factor that may fall to nothing."""
-    return 1 + size

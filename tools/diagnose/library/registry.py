@@ -9,10 +9,11 @@ from __future__ import annotations
 import runpy
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from ....model.errors import DataError, suggestion
+from ....model.errors import DataError, Problems, suggestion
 from ....model.laws.smooth import smooth_abs
 from ....model.machines.roles import Roles
 from ....scenarios.measured.table import Sensor
@@ -59,7 +60,7 @@ def library(
     at = Context(roles, ranges, sensors)
     own = [cause for family in FAMILIES for cause in family(at)]
     found = {cause.id: cause for cause in (with_mountings(own, at) if "mounting" in ranges.known else own)}
-    wrong: list[str] = []
+    wrong = Problems()
     for name, family in _others(extra_files, wrong):
         try:
             added = list(family(roles, ranges, sensors))
@@ -76,12 +77,11 @@ def library(
             else:
                 wrong += [f"{name}: {text}" for text in problems(cause, roles.spec, sensors, ranges)]
                 found[cause.id] = cause
-    if wrong:
-        raise DataError(wrong)
+    wrong.check(DataError)
     return tuple(found.values())
 
 
-def _others(files: Iterable[Path], wrong: list[str]) -> Iterator[tuple[str, Family]]:
+def _others(files: Iterable[Path], wrong: Problems) -> Iterator[tuple[str, Family]]:
     """Functions of installed packages and of files, by where they are from."""
     for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
         try:
@@ -89,28 +89,24 @@ def _others(files: Iterable[Path], wrong: list[str]) -> Iterator[tuple[str, Fami
         except Exception as error:  # a package may fail in any way
             wrong.append(f"package {entry.name} ({entry.value}): cannot be loaded: {type(error).__name__}: {error}.")
     for path in files:
-        if (family := _from_file(path, wrong)) is not None:
+        if (family := wrong.of(partial(_from_file, path))) is not None:
             yield path.name, family
 
 
-def _from_file(path: Path, wrong: list[str]) -> Family | None:
-    """The function `causes` of a file."""
+def _from_file(path: Path) -> Family:
+    """The function `causes` of a file. Raises DataError where there is none."""
     if path.suffix != ".py":
-        wrong.append(f"--library {path.name}: is no Python file. Give a file FILE.py that defines causes().")
-        return None
+        raise DataError(f"--library {path.name}: is no Python file. Give a file FILE.py that defines causes().")
     try:
         found = runpy.run_path(str(path), run_name=f"gearheat_causes_{path.stem}")
     except OSError as error:
-        wrong.append(f"--library {path.name}: cannot be read ({error.strerror}). Check the path.")
-        return None
+        raise DataError(f"--library {path.name}: cannot be read ({error.strerror}). Check the path.") from error
     except Exception as error:  # a user's file may fail in any way
-        wrong.append(f"--library {path.name}: fails: {type(error).__name__}: {error}.")
-        return None
+        raise DataError(f"--library {path.name}: fails: {type(error).__name__}: {error}.") from error
     family = found.get("causes")
     if not callable(family):
         close = suggestion("causes", [name for name, value in found.items() if callable(value)])
-        wrong.append(f"--library {path.name}: there is no function causes(roles, ranges, sensors).{close} Add it.")
-        return None
+        raise DataError(f"--library {path.name}: there is no function causes(roles, ranges, sensors).{close} Add it.")
     return family  # type: ignore[no-any-return]
 
 

@@ -112,9 +112,10 @@ def wrong(sensor: Sensor, size: str, error: Error) -> Form:
     return Form(shown=shown)
 
 
-def one_of(sensor: Sensor, own: Sequence[Sensor]) -> str:
-    """Name of a form for one of several instruments, "" for the only one."""
-    return sensor.name if len(own) > 1 else ""
+def one_of(form: Form, sensor: Sensor, own: Sequence[Sensor]) -> Form:
+    """The form of one of several instruments, which share its weight; named after the instrument, but the only one."""
+    name = ", ".join(filter(None, (sensor.name if len(own) > 1 else "", form.name)))
+    return replace(form, name=name, weight=form.weight / len(own))
 
 
 class _Instruments:
@@ -141,18 +142,12 @@ class _Instruments:
         high = max(kind.most * self.typical, 8 * sd)
         return Size("error", kind.unit, doc, sd, -high if signed else 0.0, high)
 
-    def forms(self, modes: Sequence[Mode], size: str = "error") -> tuple[Form, ...]:
-        """Each mode of each instrument of the kind; instruments share the weight."""
-        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
-        return tuple(self._form(sensor, way, size) for sensor, way in pairs)
-
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
+        """One mode of one instrument of the kind."""
         scale = 1.0 if size == "gain" else self.scale[sensor.name]
         form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
-        name = ", ".join(filter(None, (one_of(sensor, self.own), mode.name)))
-        weight, regime = mode.weight / len(self.own), mode.regime or {}
-        form = replace(form, name=name, weight=weight, scale=scale)
-        return replace(form, shapes=mode.shapes, spread=mode.spread, regime=regime)
+        form = replace(form, name=mode.name, weight=mode.weight, shapes=mode.shapes, spread=mode.spread)
+        return one_of(replace(form, regime=mode.regime or {}, scale=scale), sensor, self.own)
 
     def cause(self, key: str, modes: Sequence[Mode], size: Size | None = None, acts_on: str = "") -> Cause:
         """A cause of this kind.
@@ -164,11 +159,12 @@ class _Instruments:
         """
         said, id = TABLE[f"sensor.*.{key}"], f"sensor.{self.name}.{key}"
         size = size or self.size(**said["size"])
+        pairs = [(sensor, way) for sensor in self.own for mode in modes for way in ways(mode, sensor)]
         return Cause(
             NAMES.get(id, id),
             said["doc"].format(self.kind.words),
             size,
-            self.forms(modes, size.name),
+            tuple(self._form(sensor, way, size.name) for sensor, way in pairs),
             said.get("exposes", self.kind.calibrate),
             acts_on=acts_on or said.get("acts_on", ""),
             common=said.get("common", 1.0),
@@ -204,15 +200,12 @@ class _Instruments:
 
     def frozen(self, read: Sequence[Sensor]) -> Cause:
         """A reading that no longer moves."""
-        ranges = self.at.ranges
         forms = []
         for s in read:
-            low, high = (bound.get(s.name, 0.0) for bound in (ranges.low, ranges.high))
+            low, high = (bound.get(s.name, 0.0) for bound in (self.at.ranges.low, self.at.ranges.high))
             held = Shape("held", self.kind.unit, "what it keeps showing", min(low, high - 1e-6), high)
             form = wrong(s, "share", lambda theta, row, value: since(theta, row) * (theta["held"] - value))
-            forms.append(
-                replace(form, name=one_of(s, read), weight=1 / len(read), shapes=(PLACE, held), regime=FROM_THEN)
-            )
+            forms.append(replace(one_of(form, s, read), shapes=(PLACE, held), regime=FROM_THEN))
         known = entry("sensor.*.frozen", self.at)
         doc = known.cause.doc.format(self.kind.words)
         return known.with_forms(forms, id=f"sensor.{self.name}.frozen", doc=doc)
@@ -238,16 +231,14 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
 
     if read and (room or wall):
         shapes = tuple(shape for shape in known.shapes if needs[shape.name])
-        yield known.with_forms(Form(one_of(s, read), 1 / len(read), shapes, shown=drawn(s)) for s in read)
+        yield known.with_forms(one_of(Form(shapes=shapes, shown=drawn(s)), s, read) for s in read)
 
 
 def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
     """Room probes in the warm air of the machine."""
     known = entry("sensor.ambient.heated", at)
     forms = [(s, wrong(s, "bias", lambda theta, row, value: at.by_rise(row, theta, "e"))) for s in own]
-    yield known.with_forms(
-        replace(form, name=one_of(s, own), weight=1 / len(own), shapes=known.shapes) for s, form in forms
-    )
+    yield known.with_forms(replace(one_of(form, s, own), shapes=known.shapes) for s, form in forms)
 
 
 def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:

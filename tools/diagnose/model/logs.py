@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -116,8 +116,7 @@ class Filter:
         self.moments = False
         #: Steps of a sample.
         self.parts = 1
-        self.nx = plant.nx
-        self.u_at = [plant.u_place[path] for path in plant.given]
+        self.nx = len(plant.flat.states)
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
@@ -137,37 +136,32 @@ class Filter:
         n, k = z.shape
         p = np.tile(self.plant.p, (n, 1))
         dp = np.zeros((n, len(self.plant.knobs), k))
-        factor, shift = np.ones((n, len(self.given))), np.zeros((n, len(self.given)))
-        offset, by = np.zeros((n, len(self.read))), np.zeros((len(self.read), k))
-        scaled = np.ones_like(offset)
+        sensors, g = (*self.given, *self.read), len(self.given)
+        by, gain, moved = np.zeros((len(sensors), k)), np.ones((n, len(sensors))), np.zeros((n, len(sensors)))
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 p[:, self.plant.place[path]] *= np.exp(exponent * z[:, j])
             for path in knob.shifted:
                 p[:, self.plant.place[path]] += z[:, j]
-            if knob.sensor in self.given:
-                i = self.given.index(knob.sensor)
-                factor[:, i] *= np.exp(-z[:, j]) if knob.gain else 1.0
-                shift[:, i] += 0.0 if knob.gain else z[:, j]
-            elif knob.sensor:
-                i = self.read.index(knob.sensor)
-                offset[:, i] += 0.0 if knob.gain else z[:, j]
-                scaled[:, i] *= np.exp(z[:, j]) if knob.gain else 1.0
+                dp[:, self.plant.knobs.index(path), j] = 1.0
+            if knob.sensor:
+                i = sensors.index(knob.sensor)
                 by[i, j] = 1.0
+                if knob.gain:
+                    gain[:, i] *= np.exp(-z[:, j] if i < g else z[:, j])
+                else:
+                    moved[:, i] += z[:, j]
         for j, knob in enumerate(self.knobs):
             for path, exponent in knob.scaled.items():
                 dp[:, self.plant.knobs.index(path), j] = exponent * p[:, self.plant.place[path]]
-            for path in knob.shifted:
-                dp[:, self.plant.knobs.index(path), j] = 1.0
-        return {"p": p, "dp": dp, "factor": factor, "shift": shift, "scaled": scaled, "offset": offset, "by": by}
+        (factor, scaled), (shift, offset) = (np.split(both, [g], axis=1) for both in (gain, moved))
+        return {"p": p, "dp": dp, "factor": factor, "shift": shift, "scaled": scaled, "offset": offset, "by": by[g:]}
 
     @property
     def noise(self) -> np.ndarray:
         """Standard deviation that each state's random walk gains in one sample [K] (nx,)."""
-        found = self.drift.copy()
-        for j, state in enumerate(self.state_of):
-            if state >= 0:
-                found[state] = FOLLOWS * self.scatter[j]
+        found, read = self.drift.copy(), self.state_of >= 0
+        found[self.state_of[read]] = FOLLOWS * self.scatter[read]
         return found
 
     def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -203,18 +197,10 @@ class Filter:
             slopes: whether slope and curvature are wanted
             progress: called with the share done
         """
-        order = np.argsort(-data.there.sum(axis=1), kind="stable")
-        found = self._follow(data.some(order), z[order], free, slopes and not free, progress or (lambda share: None))
-        back = np.argsort(order)
-        return Passed(*(found[f.name][back] for f in fields(Passed)))
-
-    def _follow(
-        self, data: Windows, z: np.ndarray, free: bool, slopes: bool, progress: Callable[[float], None]
-    ) -> dict[str, np.ndarray]:
-        """What `Passed` holds of windows by falling length."""
-        data = data.halved() if self.moments else data
-        (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
-        known = self.settings(z)
+        order = np.argsort(-data.there.sum(axis=1), kind="stable")  # windows of about one length go side by side
+        data = data.some(order).halved() if self.moments else data.some(order)
+        (n, length, _), k = data.read.shape, z.shape[1] if slopes and not free else 0
+        known = self.settings(z[order])
         known |= {"dp": known["dp"][:, :, :k], "by": known["by"][:, :k]}
         x, sd = self.start(data, known["offset"])
         lengths = data.there.sum(axis=1)
@@ -234,7 +220,7 @@ class Filter:
             noise=self.given_sd,
             input_of=np.array([self.given.index(o.sensor) if o.sensor in self.given else -1 for o in self.knobs]),
             gain=np.array([o.gain for o in self.knobs], dtype=np.int64),
-            u_at=np.array(self.u_at),
+            u_at=np.array([self.plant.u_place[path] for path in self.plant.given]),
             state_of=self.state_of,
             x0=x,
             z0=self.plant.flat.starts("algebraic"),
@@ -254,9 +240,11 @@ class Filter:
                 return int(run(*places, at + begin, at + end))
 
             share_rows(followed, last - first, SIDE, 0)
-            progress(float(lengths[:last].sum() / lengths.sum()))
+            if progress:
+                progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
-        return {name: a[:, 1::2] if self.moments and name in ROWS else a for name, a in found.items()}
+        back, ends = np.argsort(order), slice(1, None, 2) if self.moments else slice(None)
+        return Passed(**{name: a[back, ends] if name in ROWS else a[back] for name, a in found.items()})
 
 
 def log_likelihood(passed: Passed) -> float:

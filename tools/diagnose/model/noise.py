@@ -146,23 +146,19 @@ def alike(o: Measured) -> np.ndarray:
     return np.asarray(np.exp(-0.5 * distance / SMOOTH**2))
 
 
-def stacked(parts: Sequence[tuple[int, np.ndarray]], sizes: Sequence[int]) -> np.ndarray:
-    """Columns of campaigns side by side in the whole vector (M, sum k): (number of the campaign, its columns)."""
-    begins = np.concatenate([[0], np.cumsum(sizes)])
-    whole = np.zeros((int(begins[-1]), sum(c.shape[1] for _, c in parts)))
-    at = 0
-    for k, columns in parts:
-        whole[begins[k] : begins[k + 1], at : at + columns.shape[1]] = columns
-        at += columns.shape[1]
-    return whole
-
-
 def by_name(parts: Iterable[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
-    """The same for all parts of a name: name -> columns in the whole vector (M, sum k)."""
-    groups: dict[str, list[tuple[int, np.ndarray]]] = {}
+    """Columns of all parts of a name, side by side in the whole vector (M, sum k).
+
+    Args:
+        parts: name, number of the campaign, its columns
+        sizes: entries of each campaign
+    """
+    ends, groups = np.cumsum(sizes), dict[str, list[np.ndarray]]()
     for name, k, columns in parts:
-        groups.setdefault(name, []).append((k, columns))
-    return {name: stacked(own, sizes) for name, own in groups.items()}
+        whole = np.zeros((ends[-1], columns.shape[1]))
+        whole[ends[k] - sizes[k] : ends[k]] = columns
+        groups.setdefault(name, []).append(whole)
+    return {name: np.concatenate(own, axis=1) for name, own in groups.items()}
 
 
 def terms(
@@ -190,12 +186,11 @@ def terms(
     torques = {s.name for s in campaigns[0].campaign.sensors if s.kind == "torque"}
     for name, own in by_name(fixed, sizes).items():
         found.append(Term(f"tolerance of {name}", np.column_stack([own.sum(axis=1), DRIFT[name in torques] * own])))
-    days = [(k, day_sd * per_group(s.by[:, len(sd)], o.campaign.test[o.row])) for k, (o, s) in pairs]
-    found.append(Term("days", own := stacked(days, sizes), loose=DAY, passing=own))
-    found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
-    fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
-    if fillings:
-        found.append(Term("fillings", own := stacked(fillings, sizes), passing=own))
+    days = (day_sd * per_group(s.by[:, len(sd)], o.campaign.test[o.row]) for _, (o, s) in pairs)
+    found.append(Term("days", own := block_diag(*days), loose=DAY, passing=own))
+    found.append(Term("further probes", block_diag(*(placement_error(o, s) for _, (o, s) in pairs))))
+    fillings = [("fillings", k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
+    found += [Term(name, columns, passing=columns) for name, columns in by_name(fillings, sizes).items()]
     measured = len(campaigns) - points
     names = np.unique([oil for o in campaigns for oil in o.campaign.oil])
     if len(names) > 1:
@@ -212,10 +207,9 @@ def terms(
 
 def _logged(campaigns: Sequence[Measured]) -> Iterator[Term]:
     """Terms of logged courses."""
-    sizes = [o.m for o in campaigns]
-    for name, made in (("courses", smoothed), ("model of courses", model_error)):
-        yield Term(name, covariance=block_diag(*map(made, campaigns)))
-    yield Term("starts", stacked([(k, start_error(o)) for k, o in enumerate(campaigns)], sizes))
+    yield Term("courses", covariance=block_diag(*map(smoothed, campaigns)))
+    yield Term("model of courses", covariance=block_diag(*map(model_error, campaigns)))
+    yield Term("starts", block_diag(*map(start_error, campaigns)))
     stated = np.concatenate([o.entries.sensor < 0 for o in campaigns])
     yield Term("dwells as logged", variance=DWELL**2 * stated)
 
@@ -273,16 +267,12 @@ def shares(o: Measured) -> np.ndarray:
 
 def smoothed(o: Measured) -> np.ndarray:
     """Scatter of the smooth curves through all samples (m, m)."""
-    found = np.zeros((o.m, o.m))
-    place: dict[tuple[str, int], list[int]] = {}
-    for i in np.flatnonzero(along(o)):
-        place.setdefault((o.read[o.entries.sensor[i]].name, int(o.row[i])), []).append(int(i))
+    found, names = np.zeros((o.m, o.m)), [s.name for s in o.read]
     for course in o.campaign.series.courses if o.campaign.series else ():
-        own, known = place.get((course.sensor, course.row)), np.isfinite(course.values)
-        if own is None:
-            continue  # it is left out
-        sd = o.campaign.sensor(course.sensor).repeat_sd
-        found[np.ix_(own, own)] = ALLOWED * sd**2 * course.scatter[np.ix_(known, known)]
+        i, known = names.index(course.sensor), np.isfinite(course.values)
+        own = np.flatnonzero(along(o) & (o.entries.sensor == i) & (o.row == course.row))
+        if len(own):  # else it is left out
+            found[np.ix_(own, own)] = ALLOWED * o.read[i].repeat_sd ** 2 * course.scatter[np.ix_(known, known)]
     return found
 
 

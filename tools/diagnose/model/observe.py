@@ -24,15 +24,6 @@ Slope = dict[int, np.ndarray]
 _Changes = dict[str, tuple[tuple[str, bytes], ...]]
 
 
-def by_part(values: Mapping[str, np.ndarray]) -> _Changes:
-    """Changes by path (n,)."""
-    found: _Changes = {}
-    for path, value in values.items():
-        part = path.partition(".")[0]
-        found[part] = (*found.get(part, ()), (path, value.tobytes()))
-    return found
-
-
 def total(terms: Sequence[tuple[np.ndarray | float, Slope]]) -> Slope:
     """Slopes, each times its weight."""
     found: Slope = {}
@@ -201,8 +192,11 @@ class _Look:
         key, untouched = (formula, t.tobytes()), self.values.keys().isdisjoint(formula.paths)
         if not untouched or (known := self.o.neutral.get(key)) is None:
             value, by_t, _ = self._physics(formula, t)
-            pairs = zip(formula.paths, value, strict=False)
-            changes = by_part({path: v for path, v in pairs if not np.array_equal(v, self._base(path))})
+            changes: _Changes = {}
+            for path, v in zip(formula.paths, value, strict=False):
+                if not np.array_equal(v, self._base(path)):
+                    part = path.partition(".")[0]
+                    changes[part] = (*changes.get(part, ()), (path, v.tobytes()))
             known = by_t[:, :, 0].copy(), changes
             if untouched and not formula.bases:
                 self.o.neutral[key] = known
@@ -300,14 +294,13 @@ class _Look:
 
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
-        o, begin = self.o, self.tried
-        effects, whole = self.seen().by[:, begin:], self.true
+        o, names = self.o, [s.name for s in self.o.read]
+        effects, whole = self.seen().by[:, self.tried :], self.true
         for k, (formula, t) in enumerate(self.candidates):
             if formula.read:
                 _, by_t, _ = self.instruments(formula, _none(t), whole)
                 for i, name in enumerate(formula.read):
-                    sensor = next(j for j, s in enumerate(o.read) if s.name == name)
-                    mine = o.entries.sensor == sensor
+                    mine = o.entries.sensor == names.index(name)
                     effects[mine, k] += by_t[i, o.entries.at[mine], 0]
         return effects
 
@@ -328,17 +321,14 @@ class _Look:
             if not formula.read:
                 continue
             value, by_t, by_reads = self.instruments(formula, t, true)
-            changed = {}
+            slopes_before, locals_before = dict(slopes), dict(locals_)
             for i, name in enumerate(formula.read):
-                slope = np.zeros((len(y), self.d))
+                slope, far = np.zeros((len(y), self.d)), np.zeros_like(locals_[name])
                 slope[:, own] = by_t[i]
-                far = np.zeros_like(locals_[name])
                 for other, weight in by_reads.items():
-                    slope += weight[i][:, None] * slopes[other]
-                    far += weight[i][:, None, None] * locals_[other]
-                changed[name] = (value[i], slope, far)
-            for name, (v, slope, far) in changed.items():
-                true[name], slopes[name], locals_[name] = v, slope, far
+                    slope += weight[i][:, None] * slopes_before[other]
+                    far += weight[i][:, None, None] * locals_before[other]
+                true[name], slopes[name], locals_[name] = value[i], slope, far
         self.true = true
         dwells = np.zeros((self.n, self.d))
         for i, slope in self.pace_slopes.items():

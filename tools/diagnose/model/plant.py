@@ -66,12 +66,10 @@ class Plant:
     ) -> None:
         self.flat, self.knobs, self.given, self.shown = flat, tuple(knobs), tuple(given), tuple(shown)
         self.tried = tuple(tried)
-        self.nx, self.nz = len(flat.states), len(flat.algebraic)
         self.p = flat.starts("parameter")
         self.place = {q.name: i for i, q in enumerate(flat.parameters)}
         self.u_place = {q.name: i for i, q in enumerate(flat.inputs)}
         self.u = flat.starts("input")
-        self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
         w, both = ca.vertcat(flat.x, flat.z), ca.densify(ca.vertcat(flat.ode, flat.residual))
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
         sizes = ca.vertcat(*(flat.p[self.place[k]] for k in tried)) if tried else ca.SX(0, 1)
@@ -93,8 +91,8 @@ class Plant:
         (_, rates), (slopes,), (_,), shown, trials = patterns_of
         patterns = [entries for pattern in (rates, slopes, *shown, *trials) for entries in pattern]
         return record(
-            nx=self.nx,
-            nw=self.nx + self.nz,
+            nx=len(self.flat.states),
+            nw=len(unknowns),
             nu=len(self.u),
             np=len(self.p),
             knobs=len(self.knobs),
@@ -104,32 +102,22 @@ class Plant:
             most=max(len(entries) for entries in patterns),
             **sizes,
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
-            scale=self.scale,
+            scale=np.array([q.nominal for q in unknowns]),
             guess=self.flat.starts("algebraic"),
             thermal=np.array([float(q.unit == "K") for q in unknowns]),
         )
 
-    @staticmethod
-    def of(
-        spec: Spec,
-        additions: Iterable[Added],
-        knobs: Sequence[str],
-        given: Sequence[str],
-        shown: Sequence[str],
-        tried: Sequence[str] = (),
-    ) -> Plant:
-        """The superset of a rig, driven as the campaign drives it, and what causes and nuisances add; see the class.
 
-        Raises:
-            GearheatError: the superset has no sound equations
-        """
-        flat, own = flatten(assemble(superset(spec, additions))), {part.name for part in spec.parts}
-        added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
-        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown, tried)
+def with_additions(spec: Spec, additions: Iterable[Added], knobs: Collection[str]) -> FlatModel:
+    """The equations of a rig, driven as the campaign drives it, with what causes and nuisances add.
 
+    Of the values of the additions that are no knobs, 0 and 1 are numbers in it, and equal ones of a name are one.
 
-def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
-    """The model with parameters that nothing changes: 0 and 1 are numbers in it, and equal ones of a name are one."""
+    Raises:
+        GearheatError: the superset has no sound equations
+    """
+    flat, own = flatten(assemble(superset(spec, additions))), {part.name for part in spec.parts}
+    fixed = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own} - set(knobs)
     first: dict[tuple[str, float], Any] = {}
     pairs = [(symbol, q) for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True) if q.name in fixed]
     if not pairs:

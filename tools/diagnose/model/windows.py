@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -41,17 +41,15 @@ class Windows:
 
     def some(self, keep: np.ndarray) -> Windows:
         """Some of the windows (N,) bool or numbers."""
-        given, read, there, counts = (a[keep] for a in (self.given, self.read, self.there, self.counts))
-        return Windows(given, read, there, counts, self.machine[keep], self.time[keep], self.rows[keep], self.step)
+        return replace(self, **{f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "step"})
 
     def halved(self) -> Windows:
         """The same with each sample as two: the inputs before, without a reading, and those at its end."""
-        given, read, there, counts, rows = (
-            np.repeat(a, 2, axis=1) for a in (self.given, self.read, self.there, self.counts, self.rows)
-        )
-        given[:, 2::2] = self.given[:, :-1]
-        read[:, ::2] = np.nan
-        return Windows(given, read, there, counts, self.machine, self.time, rows, self.step / 2)
+        names = ("given", "read", "there", "counts", "rows")
+        found = replace(self, step=self.step / 2, **{name: np.repeat(getattr(self, name), 2, axis=1) for name in names})
+        found.given[:, 2::2] = self.given[:, :-1]
+        found.read[:, ::2] = np.nan
+        return found
 
 
 def windows(
@@ -64,13 +62,8 @@ def windows(
         given, read: names of the sensors that drive and that are compared, in order
         length, settling: samples; a length of 0 keeps every stretch whole, and nothing settles
     """
-    pieces = [
-        (number, log, rows, skipped)
-        for number, log in enumerate(logs)
-        for rows, skipped in _pieces(log.stretch, length, settling)
-    ]
-    longest = max(len(rows) for _, _, rows, _ in pieces)
-    n = len(pieces)
+    pieces = [(i, log, *piece) for i, log in enumerate(logs) for piece in _pieces(log.stretch, length, settling)]
+    n, longest = len(pieces), max(len(rows) for _, _, rows, _ in pieces)
     u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
     counts, there = np.zeros((n, longest), dtype=bool), np.zeros((n, longest), dtype=bool)
     at = np.full((n, longest), -1)
@@ -87,18 +80,17 @@ def windows(
     return Windows(u, y, there, counts, machine, time, at, logs[0].step)
 
 
-def _pieces(stretch: np.ndarray, length: int, settling: int) -> list[tuple[np.ndarray, int]]:
-    found = []
+def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[np.ndarray, int]]:
+    """Rows of each window, and how many of them settle."""
     for number in np.unique(stretch):
         rows = np.flatnonzero(stretch == number)
         if not length:
-            found.append((rows, 0))
+            yield rows, 0
             continue
         for part in np.array_split(rows, max(round(len(rows) / length), 1)):
             begin = max(part[0] - settling, rows[0])
             settled = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
-            found.append((np.arange(begin, part[-1] + 1), settled))
-    return found
+            yield np.arange(begin, part[-1] + 1), settled
 
 
 def _held(column: np.ndarray) -> np.ndarray:
