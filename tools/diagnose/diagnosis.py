@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,15 +22,13 @@ from .answer.quality import average_residuals, check_data
 from .infer.evidence import White
 from .infer.found import Found
 from .infer.screen import screened
-from .infer.weigh import Options, weigh
+from .infer.weigh import Options, Progress, weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report.extension import calibrated, rig_file
 from .report.words import with_words
 from .request import Inputs, PlanInputs, unknown_causes
 from .setting import Setting, setting
-
-Progress = Callable[[str, float], None]
 
 #: Probability from which a cause that only logs can show is told.
 ALONE = 0.1

@@ -60,7 +60,7 @@ class Request:
         return found + [(name, path) for name, paths in several.items() for path in paths]
 
     def problems(self) -> list[str]:
-        """What is wrong with the options, and files that do not exist."""
+        """What is wrong with the options."""
         alpha = f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
         causes = f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}."
         lost = "needs the readings of the same tests."
@@ -72,7 +72,7 @@ class Request:
             (self.data or not self.series, f"--series {lost} Name their table, too."),
             (self.reference or not self.reference_series, f"--reference-series {lost} Give --reference, too."),
         )
-        return [text for sound, text in checks if not sound] + _lost(self.files())
+        return [text for sound, text in checks if not sound]
 
 
 @dataclass(frozen=True)
@@ -141,13 +141,13 @@ class PlanRequest:
         return single + [("--library", path) for path in self.libraries]
 
     def problems(self) -> list[str]:
-        """What is wrong with the options, and files that do not exist."""
+        """What is wrong with the options."""
         names = self.causes
         twice = [n for n in dict.fromkeys(names) if names.count(n) > 1]
         found = [f"--separate: {name} is there twice. Name each cause once." for name in twice]
         if len(set(names)) == 1:
             found.append(f"--separate {names[0]}: there is nothing to tell it from. Name two causes or more.")
-        return found + _lost(self.files())
+        return found
 
 
 @dataclass(frozen=True)
@@ -188,15 +188,13 @@ def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> li
     return problems
 
 
-def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
-    return [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
-
-
 class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
     def __init__(self, request: Request | PlanRequest, written: Mapping[str, Path], problems: Iterable[str]) -> None:
-        self.problems = Problems([*problems, *request.problems(), *_shared(request.files(), written)])
+        files = request.files()
+        lost = [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
+        self.problems = Problems([*problems, *request.problems(), *lost, *_shared(files, written)])
         card = request.card
         self.card = self.problems.of(lambda: read_card(card)) if card is None or card.is_file() else None
         self.scenario = self.problems.of(lambda: scenario_of(request.rig))
