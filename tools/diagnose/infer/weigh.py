@@ -96,7 +96,7 @@ class Weighing:
             self.null = fitted(self.problem, (), Begin(self.null.look.z))
             self.first = self.screened(self.null, self.problem)
         self._ask_alarm()
-        self._keep(self.null, self.problem.aside, (), {})
+        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
 
     def _ask_alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
@@ -287,19 +287,19 @@ class Weighing:
         Raises:
             SolveError: the model cannot be run there
         """
+        key = frozenset(a.formula for a in acting), frozenset(e.of.label for e in extras), problem.aside
         fit = fitted(problem, acting, begun)
-        self._keep(fit, problem.aside, extras, forms)
+        self._keep(key, fit, extras, forms)
         return fit
 
-    def _keep(self, fit: Fit, aside: frozenset[Aside], extras: tuple[Extra, ...], forms: Forms) -> None:
+    def _keep(self, key: Key, fit: Fit, extras: tuple[Extra, ...], forms: Forms) -> None:
         """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
-        key = frozenset(acting), frozenset(e.of.label for e in extras), aside
         causes = tuple(dict.fromkeys([*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause)]))
         log = fit.evidence + sum(float(np.log(f.form.weight)) for f in acting)
         log += sum(e.of.log_prior - self.prior.share.get(e.of.name, 0.0) for e in extras)  # the prior has the share
         log += self.prior(causes) if causes else self.critical
-        log += len(aside - self.whole.aside) * float(np.log(GROSS * Problem.FAR / ERRORS[1]))
+        log += len(key[2] - self.whole.aside) * float(np.log(GROSS * Problem.FAR / ERRORS[1]))
         if key not in self.hypotheses or log > self.hypotheses[key].log_joint:
             self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
 
