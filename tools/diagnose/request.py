@@ -103,13 +103,13 @@ class Inputs:
         return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs or self.data.series))
 
 
-def read(request: Request, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()) -> Inputs:
+def read(request: Request, written: Mapping[str, Path | None] = {}, problems: Iterable[str] = ()) -> Inputs:
     """Read and check all files but logs and libraries; `written` is option -> file, `problems` are known already.
 
     Raises:
         DataError: all problems of files and options at once
     """
-    reader = _Reader(request, written or {}, problems)
+    reader = _Reader(request, written, problems)
     data = reader.logged(reader.table(request.data), request.series)
     reference = reader.logged(reader.table(request.reference), request.reference_series)
     points = reader.table(request.predict, points=True)
@@ -161,10 +161,10 @@ class PlanInputs:
 
 
 def read_plan(
-    request: PlanRequest, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()
+    request: PlanRequest, written: Mapping[str, Path | None] = {}, problems: Iterable[str] = ()
 ) -> PlanInputs:
     """Read and check all files of a plan but libraries, as `read` does."""
-    reader = _Reader(request, written or {}, problems)
+    reader = _Reader(request, written, problems)
     points = reader.table(request.points, points=True)
     return PlanInputs(request, *reader.checked(), points)
 
@@ -179,11 +179,11 @@ def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
     return problems
 
 
-def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> list[str]:
+def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path | None]) -> list[str]:
     """Problems of files that are written over others, each by the name of its option."""
     taken, problems = {path.resolve(): name for name, path in read}, []
     for name, path in written.items():
-        if (other := taken.setdefault(path.resolve(), name)) != name:
+        if path is not None and (other := taken.setdefault(path.resolve(), name)) != name:
             problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
     return problems
 
@@ -191,7 +191,9 @@ def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> li
 class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
-    def __init__(self, request: Request | PlanRequest, written: Mapping[str, Path], problems: Iterable[str]) -> None:
+    def __init__(
+        self, request: Request | PlanRequest, written: Mapping[str, Path | None], problems: Iterable[str]
+    ) -> None:
         files = request.files()
         lost = [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
         self.problems = Problems([*problems, *request.problems(), *lost, *_shared(files, written)])

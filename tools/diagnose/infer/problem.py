@@ -174,6 +174,8 @@ class Problem:
         #: Standard deviations of the nuisances where all rules hold (nz,).
         self.near = np.array([n.near for n in self.data.nuisances[:-1]])
         self.measured = np.concatenate([o.measured for o in campaigns])
+        #: Number of readings.
+        self.m = len(self.measured)
         self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
         #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
@@ -194,11 +196,6 @@ class Problem:
     def by_law(self) -> np.ndarray:
         """Covariance of nuisances by rules by row of the data (n, n), in shares squared."""
         return by_law(self.data)
-
-    @property
-    def m(self) -> int:
-        """Number of readings."""
-        return len(self.measured)
 
     @property
     def entries_aside(self) -> list[int]:

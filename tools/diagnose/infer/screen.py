@@ -82,10 +82,8 @@ class Screen:
     def by_form(self, n: int) -> np.ndarray:
         """Log Bayes factor of each of n formulas: mean over its candidates (n,)."""
         found = np.full(n, -np.inf)
-        for k in np.unique(self.owner):
-            own = self.log_bf[self.owner == k]
-            found[k] = np.logaddexp.reduce(own) - np.log(len(own))
-        return found
+        np.logaddexp.at(found, self.owner, self.log_bf)
+        return found - np.log(np.bincount(self.owner))
 
     def start(self, formula: int) -> Start:
         """Where a fit of a formula begins: at the best of its candidates."""

@@ -41,8 +41,8 @@ class Table:
     """What all terms have in common, whatever the scatter: their columns, priors and bounds as arrays."""
 
     def __init__(self, linear: Linear) -> None:
-        self.linear, self.n = linear, linear.n
-        own = linear.terms[: self.n]
+        own = [t for t in linear.terms if not t.scatters]
+        self.linear, self.n = linear, len(own)
         self.columns = np.concatenate([t.columns for t in own], axis=1)
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
@@ -180,8 +180,7 @@ class Whitened:
         """
         known: dict[frozenset[int], TermSet] = {}
         seen = set[frozenset[int]]()
-        queue: list[_Offer] = [(-np.inf, (), ())]
-        queue += [(-np.inf, s.members, s.widths) for s in starts]
+        queue: list[_Offer] = [(-np.inf, (), ()), *((-np.inf, s.members, s.widths) for s in starts)]
         best = -np.inf
         while queue and len(seen) < looks:
             log, members, widths = heapq.heappop(queue)
