@@ -63,9 +63,8 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)
-    wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
-    if wrong and not request.quick:
+    if decision.verdict != "consistent" and not request.quick:
         held = measure_gains(found, options, lambda done: then("readings left out", 0.82 + 0.13 * done))
     then("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
@@ -115,7 +114,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
-        played=replay(found.problem, found.null, leader) if wrong else {},
+        played=replay(found.problem, found.null, leader),
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability,
         residuals=average_residuals(found),

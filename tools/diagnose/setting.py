@@ -125,7 +125,7 @@ def ranges_of(
     values = dict(zip(plant.shown, o.outputs().T, strict=True))
     if not (fine := np.isfinite(values[roles.oil])).any():
         raise SolveError(f"{spec.name}: the rig cannot be run at any point of {campaign.name}. Check its rig file.")
-    power = [values[w] * values[tau] for w, tau in zip(ends[::2], ends[1::2], strict=True)]
+    power = [values[f"{end}.w"] * values[f"{end}.tau"] for end in roles.ends]
     w, tau, T = np.abs(values[roles.speed]), np.abs(values[roles.torque]), values[roles.oil]
     nu = values[roles.viscosity] if roles.viscosity else np.full(campaign.n, 1e-4)
     rooms = [s.name for s in campaign.sensors if s.kind == "ambient"]

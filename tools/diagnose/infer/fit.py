@@ -120,6 +120,7 @@ class Vector:
     def __init__(self, problem: Problem, look: Look) -> None:
         self.acting, nz = look.acting, problem.nz
         counts = [a.formula.size for a in look.acting]
+        #: Places of the sizes, and of the shapes.
         self.sizes = [nz + sum(counts[:k]) for k in range(len(counts))]
         self.shapes = np.setdiff1d(np.arange(nz, nz + sum(counts)), self.sizes)
         limits = [problem.data.limits[:, :nz], *(a.bounds for a in look.acting)]

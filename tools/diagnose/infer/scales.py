@@ -1,7 +1,6 @@
 """The most likely scales of a scatter's loose terms: steps by a curvature that begins as expected, and learns.
 
-A residual is r ~ N(0, V) with V = base + sum of w C over the loose terms; of the weights w = exp(2 s) the logarithms s
-have normal priors.
+A residual is r ~ N(0, V) with V = base + sum of exp(2 s) C over the loose terms; the logarithms s have normal priors.
 """
 
 from __future__ import annotations
@@ -41,13 +40,12 @@ def most_likely(base: np.ndarray, loose: Sequence[Term], residual: np.ndarray, b
     precision = np.array([t.loose for t in loose]) ** -2.0
 
     def at(x: np.ndarray) -> tuple[float, np.ndarray]:
-        value, slopes = cost.at(weights := np.exp(2 * x))
-        return float(value + 0.5 * precision @ x**2), 2 * weights * slopes + precision * x
+        value, slopes = cost.at(x)
+        return float(value + 0.5 * precision @ x**2), slopes + precision * x
 
     x = np.clip(begun, *BOUNDS)
     value, gradient = at(x)
-    weights = np.exp(2 * x)
-    H = 4 * np.outer(weights, weights) * cost.curvature() + np.diag(precision)
+    H = cost.curvature(x) + np.diag(precision)
     for _ in range(STEPS):
         step = _bounded(x, H, gradient)
         if -0.5 * gradient @ step < LITTLE:
@@ -90,20 +88,20 @@ class _Many:
         self.flat = np.array([U @ U.T for U in self.columns]).reshape(len(self.columns), base.size)
         self.variances = np.array([t.variance for t in loose if t.variance is not None])
 
-    def at(self, weights: np.ndarray) -> tuple[float, np.ndarray]:
-        """Value, and slopes by the weights."""
-        even = self.even
+    def at(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
+        """Value and slopes."""
+        weights, even = np.exp(2 * scales), self.even
         V = self.base + (weights[~even] @ self.flat).reshape(self.base.shape)
         V[np.diag_indices(len(V))] += weights[even] @ self.variances
         white = White.of(V)
         self.inverse, a = white.inverse, white.back(self.residual)
         value = 0.5 * self.residual @ a + 0.5 * white.log_det
-        left, slopes = 0.5 * (self.inverse - np.outer(a, a)), np.zeros(len(weights))
+        left, slopes = self.inverse - np.outer(a, a), np.zeros(len(scales))
         slopes[even], slopes[~even] = self.variances @ np.diag(left), self.flat @ left.ravel()
-        return float(value), slopes
+        return float(value), weights * slopes
 
-    def curvature(self) -> np.ndarray:
-        """Expected second derivatives by the weights, at those that were asked for last."""
+    def curvature(self, scales: np.ndarray) -> np.ndarray:
+        """Expected second derivatives at the scales that were asked for last."""
         even, inverse, own = self.even, self.inverse, self.variances
         found = np.zeros((len(even), len(even)))
         found[np.ix_(even, even)] = own @ inverse**2 @ own.T
@@ -114,7 +112,8 @@ class _Many:
             mixed = own @ along**2 @ groups.T
             found[np.ix_(even, ~even)], found[np.ix_(~even, even)] = mixed, mixed.T
             found[np.ix_(~even, ~even)] = groups @ (U.T @ along) ** 2 @ groups.T
-        return 0.5 * found
+        weights = np.exp(2 * scales)
+        return 2 * np.outer(weights, weights) * found
 
 
 class _Few:
@@ -137,22 +136,22 @@ class _Few:
         near, e = white(U), white(residual)
         self.G, self.b, self.rest = near.T @ near, near.T @ e, 0.5 * (e @ e + white.log_det)
 
-    def at(self, weights: np.ndarray) -> tuple[float, np.ndarray]:
-        """Value, and slopes by the weights."""
-        w = np.repeat(weights - self.least, self.counts)
+    def at(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
+        """Value and slopes."""
+        w = np.repeat(np.exp(2 * scales) - self.least, self.counts)
         white = White.of(self.G + np.diag(1 / w))
         S = white.inverse
         along = S @ self.b
         value = self.rest + 0.5 * (white.log_det + np.log(w).sum() - self.b @ along)
         self.inside = (np.eye(len(w)) - S / w) / w[:, None]  # U' V^-1 U
-        own = 0.5 * (np.diag(self.inside) - (along / w) ** 2)
+        own = np.diag(self.inside) - (along / w) ** 2
         each = [part.sum() for part in np.split(own, np.cumsum(self.counts)[:-1])]
-        return float(value), np.array(each)
+        return float(value), np.exp(2 * scales) * np.array(each)
 
-    def curvature(self) -> np.ndarray:
-        """Expected second derivatives by the weights, at those that were asked for last."""
-        groups = _groups(self.counts)
-        return np.asarray(0.5 * (groups @ self.inside**2 @ groups.T))
+    def curvature(self, scales: np.ndarray) -> np.ndarray:
+        """Expected second derivatives at the scales that were asked for last."""
+        groups, weights = _groups(self.counts), np.exp(2 * scales)
+        return np.asarray(2 * np.outer(weights, weights) * (groups @ self.inside**2 @ groups.T))
 
 
 def _groups(counts: Sequence[int]) -> np.ndarray:
