@@ -37,11 +37,10 @@ class Outputs:
     report: Path | None = None
     extended: Path | None = None
 
-    def files(self) -> dict[str, Path]:
+    def files(self) -> dict[str, Path | None]:
         """The files that are written, by the name of their option."""
         given = {"--predictions": self.predictions, "--json": file_of(self.json), "--report": self.report}
-        given |= {"--extended": self.extended}
-        return {name: path for name, path in given.items() if path is not None}
+        return given | {"--extended": self.extended}
 
 
 class Diagnosis(Display, Findings):
@@ -262,8 +261,7 @@ def plan(
         problems.append(f"--out {out}: unknown kind of picture. Its name must end in {kinds}.")
     if picture is not None and not separate:
         problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
-    given = {"--json": file_of(json), "--out": picture}
-    inputs = read_plan(request, {name: path for name, path in given.items() if path is not None}, problems)
+    inputs = read_plan(request, {"--json": file_of(json), "--out": picture}, problems)
     from . import diagnosis  # what it needs loads slowly
 
     with progress_bar() as progress, threadpool_limits(1, "blas"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,15 +22,13 @@ from .answer.quality import average_residuals, check_data
 from .infer.evidence import White
 from .infer.found import Found
 from .infer.screen import screened
-from .infer.weigh import Options, weigh
+from .infer.weigh import Options, Progress, weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report.extension import calibrated, rig_file
 from .report.words import with_words
 from .request import Inputs, PlanInputs, unknown_causes
 from .setting import Setting, setting
-
-Progress = Callable[[str, float], None]
 
 #: Probability from which a cause that only logs can show is told.
 ALONE = 0.1
@@ -65,9 +63,8 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)
-    wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
-    if wrong and not request.quick:
+    if decision.verdict != "consistent" and not request.quick:
         held = measure_gains(found, options, lambda done: then("readings left out", 0.82 + 0.13 * done))
     then("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
@@ -117,7 +114,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
-        played=replay(found.problem, found.null, leader) if wrong else {},
+        played=replay(found.problem, found.null, leader),
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability,
         residuals=average_residuals(found),

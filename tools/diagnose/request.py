@@ -60,7 +60,7 @@ class Request:
         return found + [(name, path) for name, paths in several.items() for path in paths]
 
     def problems(self) -> list[str]:
-        """What is wrong with the options, and files that do not exist."""
+        """What is wrong with the options."""
         alpha = f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
         causes = f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}."
         lost = "needs the readings of the same tests."
@@ -72,7 +72,7 @@ class Request:
             (self.data or not self.series, f"--series {lost} Name their table, too."),
             (self.reference or not self.reference_series, f"--reference-series {lost} Give --reference, too."),
         )
-        return [text for sound, text in checks if not sound] + _lost(self.files())
+        return [text for sound, text in checks if not sound]
 
 
 @dataclass(frozen=True)
@@ -103,13 +103,13 @@ class Inputs:
         return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs or self.data.series))
 
 
-def read(request: Request, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()) -> Inputs:
+def read(request: Request, written: Mapping[str, Path | None] = {}, problems: Iterable[str] = ()) -> Inputs:
     """Read and check all files but logs and libraries; `written` is option -> file, `problems` are known already.
 
     Raises:
         DataError: all problems of files and options at once
     """
-    reader = _Reader(request, written or {}, problems)
+    reader = _Reader(request, written, problems)
     data = reader.logged(reader.table(request.data), request.series)
     reference = reader.logged(reader.table(request.reference), request.reference_series)
     points = reader.table(request.predict, points=True)
@@ -141,13 +141,13 @@ class PlanRequest:
         return single + [("--library", path) for path in self.libraries]
 
     def problems(self) -> list[str]:
-        """What is wrong with the options, and files that do not exist."""
+        """What is wrong with the options."""
         names = self.causes
         twice = [n for n in dict.fromkeys(names) if names.count(n) > 1]
         found = [f"--separate: {name} is there twice. Name each cause once." for name in twice]
         if len(set(names)) == 1:
             found.append(f"--separate {names[0]}: there is nothing to tell it from. Name two causes or more.")
-        return found + _lost(self.files())
+        return found
 
 
 @dataclass(frozen=True)
@@ -161,10 +161,10 @@ class PlanInputs:
 
 
 def read_plan(
-    request: PlanRequest, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()
+    request: PlanRequest, written: Mapping[str, Path | None] = {}, problems: Iterable[str] = ()
 ) -> PlanInputs:
     """Read and check all files of a plan but libraries, as `read` does."""
-    reader = _Reader(request, written or {}, problems)
+    reader = _Reader(request, written, problems)
     points = reader.table(request.points, points=True)
     return PlanInputs(request, *reader.checked(), points)
 
@@ -179,24 +179,24 @@ def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
     return problems
 
 
-def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> list[str]:
+def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path | None]) -> list[str]:
     """Problems of files that are written over others, each by the name of its option."""
     taken, problems = {path.resolve(): name for name, path in read}, []
     for name, path in written.items():
-        if (other := taken.setdefault(path.resolve(), name)) != name:
+        if path is not None and (other := taken.setdefault(path.resolve(), name)) != name:
             problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
     return problems
-
-
-def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
-    return [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
 
 
 class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
-    def __init__(self, request: Request | PlanRequest, written: Mapping[str, Path], problems: Iterable[str]) -> None:
-        self.problems = Problems([*problems, *request.problems(), *_shared(request.files(), written)])
+    def __init__(
+        self, request: Request | PlanRequest, written: Mapping[str, Path | None], problems: Iterable[str]
+    ) -> None:
+        files = request.files()
+        lost = [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
+        self.problems = Problems([*problems, *request.problems(), *lost, *_shared(files, written)])
         card = request.card
         self.card = self.problems.of(lambda: read_card(card)) if card is None or card.is_file() else None
         self.scenario = self.problems.of(lambda: scenario_of(request.rig))

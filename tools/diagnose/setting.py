@@ -84,17 +84,16 @@ def setting(
     ranges = ranges_of(spec, roles, data, oils, point)
     sensors = data.sensors
     causes = library(roles, ranges, sensors, libraries)
-    wide = reference is not None
-    films = thin_film_friction(Context(roles, ranges, sensors))
     stated = nuisances(roles, card.prior_sd, driven.uncertainties, driven.rules)
-    known = (*stated, *([films] if films else ()))
-    known = tuple(replace(n, sd=max(n.sd, n.wide), near=1.0) for n in known) if wide else known
+    known = tuple(n for n in [*stated, thin_film_friction(Context(roles, ranges, sensors))] if n is not None)
+    if reference is not None:
+        known = tuple(replace(n, sd=max(n.sd, n.wide), near=1.0) for n in known)
     known = tuple(n for n in known if n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
-    added = [(one.parts, one.connections) for one in (*(f.form for f in formulas), *known)]
+    added = [(f.form.parts, f.form.connections) for f in formulas] + [(n.parts, n.connections) for n in known]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
     tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
     plant = Plant(with_additions(spec, added, knobs), tuple(knobs), [s.reads for s in data.given], shown, tried)
@@ -126,7 +125,7 @@ def ranges_of(
     values = dict(zip(plant.shown, o.outputs().T, strict=True))
     if not (fine := np.isfinite(values[roles.oil])).any():
         raise SolveError(f"{spec.name}: the rig cannot be run at any point of {campaign.name}. Check its rig file.")
-    power = [values[w] * values[tau] for w, tau in zip(ends[::2], ends[1::2], strict=True)]
+    power = [values[f"{end}.w"] * values[f"{end}.tau"] for end in roles.ends]
     w, tau, T = np.abs(values[roles.speed]), np.abs(values[roles.torque]), values[roles.oil]
     nu = values[roles.viscosity] if roles.viscosity else np.full(campaign.n, 1e-4)
     rooms = [s.name for s in campaign.sensors if s.kind == "ambient"]

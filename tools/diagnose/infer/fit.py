@@ -118,36 +118,22 @@ class Vector:
     """The vector of a problem at a look: priors, those of sizes the widest, bounds, longest steps, places."""
 
     def __init__(self, problem: Problem, look: Look) -> None:
-        self.nz, self.acting = problem.nz, look.acting
-        low, high = ([side] for side in problem.data.limits[:, : self.nz])
-        precision, longest = [look.sd**-2.0], [np.full(self.nz, LONGEST)]
-        self.sizes: list[int] = []
-        begin = self.nz
-        for a in look.acting:
-            a_low, a_high = a.bounds
-            low.append(a_low)
-            high.append(a_high)
-            n = a.formula.size - 1
-            precision.append(np.r_[1 / a.widths[-1] ** 2, np.ones(n)])
-            longest.append(np.r_[LONGEST_SIZE, np.full(n, LONGEST_SHAPE)])
-            self.sizes.append(begin)
-            begin += 1 + n
-        self.low, self.high = np.concatenate(low), np.concatenate(high)
-        self.precision, self.longest = np.concatenate(precision), np.concatenate(longest)
-
-    @property
-    def shapes(self) -> np.ndarray:
-        """Places of the shapes."""
-        places = np.arange(self.nz, len(self.low))
-        return places[~np.isin(places, self.sizes)]
+        self.acting, nz = look.acting, problem.nz
+        counts = [a.formula.size for a in look.acting]
+        #: Places of the sizes, and of the shapes.
+        self.sizes = [nz + sum(counts[:k]) for k in range(len(counts))]
+        self.shapes = np.setdiff1d(np.arange(nz, nz + sum(counts)), self.sizes)
+        limits = [problem.data.limits[:, :nz], *(a.bounds for a in look.acting)]
+        self.low, self.high = np.concatenate(limits, axis=1)
+        self.precision = np.r_[look.sd**-2.0, np.ones(sum(counts))]
+        self.precision[self.sizes] = [1 / a.widths[-1] ** 2 for a in look.acting]
+        self.longest = np.r_[np.full(nz, LONGEST), np.full(sum(counts), LONGEST_SHAPE)]
+        self.longest[self.sizes] = LONGEST_SIZE
 
     def split(self, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes."""
-        begin, found = self.nz, []
-        for a in self.acting:
-            found.append(replace(a, t=x[begin : begin + a.formula.size]))
-            begin += a.formula.size
-        return x[: self.nz], tuple(found)
+        z, *own = np.split(x, self.sizes)
+        return z, tuple(replace(a, t=t) for a, t in zip(self.acting, own, strict=True))
 
     def step(self, x: np.ndarray, H: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         """The step that lowers a quadratic cost most, inside the bounds and not longer than is trusted."""
@@ -248,7 +234,7 @@ class _Line:
     def __init__(self, problem: Problem, look: Look) -> None:
         self.problem, self.look, self.vector = problem, look, Vector(problem, look)
         vector, J = self.vector, look.jacobian
-        known = look.by_sd[:, np.r_[np.arange(vector.nz), vector.shapes]]
+        known = look.by_sd[:, np.r_[np.arange(problem.nz), vector.shapes]]
         self.known, self.G = known @ known.T, J[:, vector.sizes]
         self.residual = problem.measured - look.shown + J @ look.x
         self.prior = low, high, _ = priors(look.acting)

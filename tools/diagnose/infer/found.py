@@ -140,6 +140,6 @@ class Found:
         for h in self.hypotheses:
             key, log = frozenset(h.causes), h.log_joint - (self.prior(h.causes) if h.causes else self.critical)
             values[key] = float(np.logaddexp(values.get(key, -np.inf), log))
-        own = frozenset(c for c in causes if c in self.prior.causes)
+        own = frozenset(c for c in causes if c in self.prior.share)
         tried = [own] if own in values else [key for c in own if (key := frozenset([c])) in values]
         return max((values[key] for key in tried), default=values[frozenset()]) - values[frozenset()]

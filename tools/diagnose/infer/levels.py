@@ -79,14 +79,13 @@ def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begu
         begun: levels to begin with; its expectations count as data
     """
     levels, machines, k = begun, len(begun.mean), found.H.shape[1]
+    type_of = np.zeros(machines, dtype=int)
     for _ in range(ROUNDS):
         windows = found.spread(levels.window).summed(season, len(machine_of))
         seasons = windows.spread(levels.season).summed(machine_of, machines)
-        top = seasons.spread(levels.machine).summed(np.zeros(machines, dtype=int), 1)
-        C = np.linalg.inv(top.H + np.linalg.inv(levels.root))
-        m = (C @ top.eta[:, :, None])[:, :, 0]
-        parents = np.zeros(machines, dtype=int)
-        z, Cz, _ = _down(seasons, levels.machine, m[parents], C[parents])
+        types = seasons.spread(levels.machine).summed(type_of, 1)
+        m, C, _ = _down(types, levels.root, np.zeros((1, k)), np.zeros((1, k, k)))
+        z, Cz, _ = _down(seasons, levels.machine, m[type_of], C[type_of])
         zy, Cy, moved = _down(windows, levels.season, z[machine_of], Cz[machine_of])
         _, _, wandered = _down(found, levels.window, zy[season], Cy[season])
         n = len(machine_of)

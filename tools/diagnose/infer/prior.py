@@ -28,9 +28,8 @@ class Prior:
     """
 
     def __init__(self, causes: Iterable[Cause]) -> None:
-        self.causes: Mapping[str, Cause] = {c.id: c for c in causes}
         families: dict[str, list[Cause]] = {}
-        for cause in self.causes.values():
+        for cause in {c.id: c for c in causes}.values():
             families.setdefault(cause.family, []).append(cause)
         weight = {name: max(c.common for c in own) for name, own in families.items()}
         whole = sum(weight.values())

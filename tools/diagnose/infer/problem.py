@@ -51,11 +51,11 @@ class Acting:
         return self.formula.cause.id
 
     @property
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest parameters."""
+    def bounds(self) -> np.ndarray:
+        """Lowest and highest parameters (2, d)."""
         low, high = self.formula.limits
         far = np.full(self.formula.size - 1, FAR)
-        return np.r_[low, -far], np.r_[high, far]
+        return np.array([np.r_[low, -far], np.r_[high, far]])
 
     @property
     def widths(self) -> np.ndarray:
@@ -160,26 +160,22 @@ class Problem:
     Args:
         campaigns: the data, then a healthy reference where there is one
         day_sd: standard deviation of the cooling from day to day; its direction is the last nuisance of a campaign
-        aside: readings that count for nothing
-        more: what scatters beside all that is known
     """
 
     #: A reading that is set aside scatters by so many of its standard deviations.
     FAR = 1e3
 
-    def __init__(
-        self,
-        campaigns: Sequence[Observed],
-        day_sd: float,
-        aside: frozenset[Aside] = frozenset(),
-        more: tuple[Term, ...] = (),
-    ) -> None:
-        self.campaigns, self.day_sd, self.aside, self.more = tuple(campaigns), day_sd, aside, more
+    def __init__(self, campaigns: Sequence[Observed], day_sd: float) -> None:
+        self.campaigns, self.day_sd = tuple(campaigns), day_sd
+        #: Readings that count for nothing, and what scatters beside all that is known.
+        self.aside, self.more = frozenset[Aside](), tuple[Term, ...]()
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         #: Standard deviations of the nuisances where all rules hold (nz,).
         self.near = np.array([n.near for n in self.data.nuisances[:-1]])
         self.measured = np.concatenate([o.measured for o in campaigns])
+        #: Number of readings.
+        self.m = len(self.measured)
         self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
         #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
@@ -202,35 +198,28 @@ class Problem:
         return by_law(self.data)
 
     @property
-    def m(self) -> int:
-        """Number of readings."""
-        return len(self.measured)
-
-    @property
     def entries_aside(self) -> list[int]:
         """Numbers of the compared readings that are set aside."""
         return [a.number for a in self.aside if not a.sensor]
 
     def without(self, aside: frozenset[Aside]) -> Self:
         """The same with some readings set aside."""
-        return self._with(aside=aside)
+        found = copy(self)
+        found.aside = aside
+        return found
+
+    def beside(self, more: tuple[Term, ...]) -> Self:
+        """The same with further scatter."""
+        found = copy(self)
+        found.more = more
+        return found
 
     def only(self, kept: np.ndarray) -> Problem:
         """The same with some of its compared readings (k,), renumbered; all that are set aside are among them."""
         ends = pairwise(np.cumsum([0, *(o.m for o in self.campaigns)]))
         own = [o.only(kept[(kept >= a) & (kept < b)] - a) for o, (a, b) in zip(self.campaigns, ends, strict=True)]
         aside = (a if a.sensor else Aside(int(np.searchsorted(kept, a.number))) for a in self.aside)
-        return Problem(own, self.day_sd, frozenset(aside))
-
-    def beside(self, more: tuple[Term, ...]) -> Self:
-        """The same with further scatter."""
-        return self._with(more=more)
-
-    def _with(self, **changes: object) -> Self:
-        """The same but for some attributes."""
-        found = copy(self)
-        vars(found).update(changes)
-        return found
+        return Problem(own, self.day_sd).without(frozenset(aside))
 
     def look(
         self,
@@ -262,9 +251,8 @@ class Problem:
             if laws.any():
                 bent[part] = (found.by[:, : self.nz] * laws.T[o.row]).sum(axis=1)
                 found = replace(found, shown=found.shown - bent[part])
-            blocks[part, : self.nz] = found.by[:, : self.nz]
-            if own:
-                blocks[part, self.nz :] = found.by[:, self.nz + 1 :]
+            by = np.delete(found.by, self.nz, axis=1)  # without the cooling of a day
+            blocks[part, : by.shape[1]] = by
             seen.append(found)
             begin += o.m
         shown = np.concatenate([s.shown for s in seen])

@@ -16,12 +16,8 @@ from .evidence import White, log_bayes_factors
 from .prior import Prior
 from .problem import PACES, Acting, Look, Problem, priors
 
-#: Start points of a form for its first shape, beside the one in the middle.
-FIRST = 3
-#: Start points for each further shape.
-FURTHER = 1
-#: Start points of a form at most, but for those combinations.
-MOST = 6
+#: Start points of a form with no shape, one, two, and more.
+POINTS = (1, 4, 5, 6)
 #: Start points along a threshold, whose fits may each have an optimum of their own: of physics, two usual widths apart,
 #: and of instruments.
 THRESHOLDS = (12, 8)
@@ -86,10 +82,8 @@ class Screen:
     def by_form(self, n: int) -> np.ndarray:
         """Log Bayes factor of each of n formulas: mean over its candidates (n,)."""
         found = np.full(n, -np.inf)
-        for k in np.unique(self.owner):
-            own = self.log_bf[self.owner == k]
-            found[k] = np.logaddexp.reduce(own) - np.log(len(own))
-        return found
+        np.logaddexp.at(found, self.owner, self.log_bf)
+        return found - np.log(np.bincount(self.owner))
 
     def start(self, formula: int) -> Start:
         """Where a fit of a formula begins: at the best of its candidates."""
@@ -120,8 +114,7 @@ def samples(formulas: tuple[Formula, ...], orders: tuple[float, ...]) -> tuple[t
         else:
             mostly = [isinstance(shape, Mostly) for shape in formula.form.shapes]
             grid = list(product(MOSTLY, repeat=sum(mostly)))
-            n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
-            points = spread(max(n, len(grid)), d)
+            points = spread(max(POINTS[min(d, len(POINTS) - 1)], len(grid)), d)
             points[:, mostly] = np.resize(grid, (len(points), sum(mostly)))
         sizes = PACES if formula.paced else (0.0,)
         for size, u in product(sizes, points):

@@ -41,18 +41,9 @@ class Table:
     """What all terms have in common, whatever the scatter: their columns, priors and bounds as arrays."""
 
     def __init__(self, linear: Linear) -> None:
-        self.linear, self.n = linear, linear.n
-        own = linear.terms[: self.n]
+        own = [t for t in linear.terms if not t.scatters]
+        self.linear, self.n = linear, len(own)
         self.columns = np.concatenate([t.columns for t in own], axis=1)
-        alike: dict[tuple[bool, int, tuple[float, ...]], list[int]] = {}
-        for number, t in enumerate(linear.terms):
-            alike.setdefault((t.scatters, t.columns.shape[1], tuple(t.widths)), []).append(number)
-        #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
-        self.scatters = [
-            (numbers, np.array(widths), np.concatenate([linear.terms[k].columns for k in numbers], axis=1))
-            for (scatters, _, widths), numbers in alike.items()
-            if scatters
-        ]
         self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
         self.shares = np.array([t.log_prior for t in linear.terms])
         self.families = np.array([t.family for t in linear.terms])
@@ -63,12 +54,21 @@ class Table:
         self.codes = np.array(
             [np.unique(words, return_inverse=True)[1] for words in (names, self.kinds, self.families)]
         )
+        #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
+        self.scatters = []
         #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
         self.groups = []
+        alike: dict[tuple[bool, int, tuple[float, ...]], list[int]] = {}
+        for number, t in enumerate(linear.terms):
+            alike.setdefault((t.scatters, t.columns.shape[1], tuple(t.widths)), []).append(number)
         for (scatters, _, widths), numbers in alike.items():
-            if not scatters:
-                k, tried = np.array(numbers), np.array(widths)
+            tried = np.array(widths)
+            if scatters:
+                columns = np.concatenate([linear.terms[k].columns for k in numbers], axis=1)
+                self.scatters.append((numbers, tried, columns))
+            else:
+                k = np.array(numbers)
                 prior = prior_mass(self.low[k], self.high[k], tried)
                 self.groups.append((k, tried, prior, -np.log(prior.min(axis=0))))
 
@@ -180,8 +180,7 @@ class Whitened:
         """
         known: dict[frozenset[int], TermSet] = {}
         seen = set[frozenset[int]]()
-        queue: list[_Offer] = [(-np.inf, (), ())]
-        queue += [(-np.inf, s.members, s.widths) for s in starts]
+        queue: list[_Offer] = [(-np.inf, (), ()), *((-np.inf, s.members, s.widths) for s in starts)]
         best = -np.inf
         while queue and len(seen) < looks:
             log, members, widths = heapq.heappop(queue)
@@ -249,15 +248,13 @@ class Whitened:
         turned, b, _ = self.beside(own.sized)
         back, left = self.white.turned(turned).T, self.e @ self.e - b @ b
         logs = own.log + self.table.log_priors(own.terms) - self.table.log_prior(own.terms)
-        for group, (numbers, widths, columns) in enumerate(self.table.scatters):
+        for (numbers, widths, columns), (products, along) in zip(self.table.scatters, self.scattering, strict=True):
             if not np.isfinite(logs[numbers]).any():
                 continue
-            products, along = self.scattering[group]
             tie = (back @ columns).reshape(len(back), *along.shape).swapaxes(0, 1)
-            products, along = products - tie.swapaxes(1, 2) @ tie, along - b @ tie
             k, c = along.shape
             inner = np.full((k, c + 1, c + 1), left)  # of columns and residual
-            inner[:, :c, :c], inner[:, c, :c] = products, along
+            inner[:, :c, :c], inner[:, c, :c] = products - tie.swapaxes(1, 2) @ tie, along - b @ tie
             v = np.append(np.repeat(widths[:, None], c, axis=1), np.ones((len(widths), 1)), axis=1)[:, None]
             root = np.linalg.cholesky(inner * v[..., None] * v[..., None, :] + np.diag([1.0] * c + [0.0]))
             diagonal = np.diagonal(root, axis1=2, axis2=3)

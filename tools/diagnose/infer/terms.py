@@ -215,11 +215,6 @@ class Linear:
     critical: float
     most: int
 
-    @property
-    def n(self) -> int:
-        """Number of sizes and gross readings."""
-        return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
-
     def at(self, scales: Sequence[float]) -> Noise:
         """The scatter with some scales."""
         return replace(self.noise, scales=np.array(scales))

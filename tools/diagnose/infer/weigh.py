@@ -6,7 +6,7 @@ at the best of them until the best one stays. All fits are weighed alike, nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -17,7 +17,7 @@ from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import sets
 from .evidence import White
-from .fit import Begin, Fit, fitted
+from .fit import Begin, Fit, Vector, fitted
 from .found import Extra, Forms, Found, Hypothesis, Key, with_forms
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
@@ -43,15 +43,6 @@ QUICK = 3
 FIRST = 2.0
 
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True, eq=False)
-class _Combination:
-    """Sets of terms with the same forms, scatters and gross readings, and the likeliest of them."""
-
-    key: Key
-    best: TermSet
-    log: float
 
 
 @dataclass(frozen=True)
@@ -93,17 +84,16 @@ class Weighing:
         self.prior = Prior(f.cause for f in formulas)
         self.hypotheses: dict[Key, Hypothesis] = {}
         self.exchanged = set[Key]()
+        self.problem, self.critical = problem, FIRST
         self.progress("calibrating without a cause", 0.02)
-        null = fitted(problem, (), Begin(np.zeros(problem.nz)))
+        self.null = fitted(problem, (), Begin(np.zeros(problem.nz)))
         self.progress("effects of all causes", 0.1)
-        first = self.screened(null, problem)
-        self.critical = FIRST
-        self.problem, self.null, self.first = problem, null, first
+        self.first = self.screened(self.null, problem)
         if options.critical is None:  # else gross readings are known as well
-            leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
+            leader = self.search(self.null, self.first, "gross readings", 0.2, QUICK)[0]
             self.problem = problem.without(problem.aside | self.linear.aside(leader))
         if self.problem.aside != problem.aside:
-            self.null = fitted(self.problem, (), Begin(null.look.z))
+            self.null = fitted(self.problem, (), Begin(self.null.look.z))
             self.first = self.screened(self.null, self.problem)
         self._ask_alarm()
         self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
@@ -169,12 +159,11 @@ class Weighing:
         problem, J = self.whole, near.look.jacobian
         candidates = zip(look.candidates, look.weights(self.prior), look.effects.T, strict=True)
         terms = [as_term(c, log, effect[:, None]) for c, log, effect in candidates]
-        effects, acting, place = np.zeros(problem.m), near.look.acting, problem.nz
-        for a in acting:
+        effects = np.zeros(problem.m)
+        for a, place in zip(near.look.acting, Vector(problem, near.look).sizes, strict=True):
             log = self.prior.share[a.id] + np.log(a.formula.form.weight)  # its shapes are fitted, none a sample of many
             terms.append(as_term(a, log, J[:, [place]]))
             effects += a.t[0] * J[:, place]
-            place += a.formula.size
         terms += gross(problem, near.look)
         terms += spreads(problem, near.look, self.spreads, self.prior)
         terms += remainders(problem)
@@ -207,11 +196,12 @@ class Weighing:
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
         best: dict[str, int] = {}
         for k in np.argsort(-value, kind="stable"):
-            if np.isfinite(value[k]) and taken.isdisjoint((self.formulas[k].cause.id, self.formulas[k].cause.family)):
-                best.setdefault(self.formulas[k].cause.id, int(k))
-        for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
-            own = [i for i, f in enumerate(self.formulas) if f.cause.id == self.formulas[k].cause.id]
-            yield look.start(k), {self.formulas[i].form.name: float(value[i]) for i in own}
+            cause = self.formulas[k].cause
+            if np.isfinite(value[k]) and taken.isdisjoint((cause.id, cause.family)):
+                best.setdefault(cause.id, int(k))
+        for name in dict.fromkeys([*list(best)[:n], *(c for c in wanted if c in best)]):
+            forms = zip(self.formulas, value.tolist(), strict=True)
+            yield look.start(best[name]), {f.form.name: log for f, log in forms if f.cause.id == name}
 
     def _exchange(self) -> None:
         """Fits the leading set without each of what acts in it, and with what promises most in its place.
@@ -253,21 +243,17 @@ class Weighing:
 
     def fit_sets(self, found: Sequence[TermSet], near: Fit, share: float) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
-        combinations = self._combinations(found)
-        for done, own in enumerate(combinations[:FITTED]):
-            self.progress("causes fitted together", share + 0.1 * done / FITTED)
-            if own.log < combinations[0].log - WITHIN:
-                break
-            if own.key not in self.hypotheses:
-                self._fit(own, near, self._forms(own, combinations))
-
-    def _combinations(self, found: Sequence[TermSet]) -> list[_Combination]:
-        """Sets put together by their forms and scatters, the likeliest first."""
-        members: dict[Key, list[TermSet]] = {}
+        alike: dict[Key, list[TermSet]] = {}
         for s in found:
-            members.setdefault(self._key(s), []).append(s)
-        logs = {key: float(np.logaddexp.reduce([s.log for s in own])) for key, own in members.items()}
-        return sorted((_Combination(key, own[0], logs[key]) for key, own in members.items()), key=lambda c: -c.log)
+            alike.setdefault(self._key(s), []).append(s)
+        together = {key: float(np.logaddexp.reduce([s.log for s in own])) for key, own in alike.items()}
+        logs = dict(sorted(together.items(), key=lambda item: -item[1]))
+        for done, (key, log) in enumerate(list(logs.items())[:FITTED]):
+            self.progress("causes fitted together", share + 0.1 * done / FITTED)
+            if log < max(logs.values()) - WITHIN:
+                break
+            if key not in self.hypotheses:
+                self._fit(key, alike[key][0], near, _forms(key, logs))
 
     def _key(self, s: TermSet) -> Key:
         terms = self.linear.terms
@@ -275,20 +261,9 @@ class Weighing:
         aside = self.whole.aside | self.linear.aside(s)
         return frozenset(forms), frozenset(terms[k].label for k, _ in s.scatter.beside), aside
 
-    def _forms(self, own: _Combination, all_: Iterable[_Combination]) -> dict[str, dict[str, float]]:
-        """Cause -> form -> log weight, over the combinations that differ in their forms alone."""
-        causes = {f.cause.id for f in own.key[0]}
-        logs: dict[str, dict[str, float]] = {c: {} for c in causes}
-        for other in all_:
-            if other.key[1:] == own.key[1:] and {f.cause.id for f in other.key[0]} == causes:
-                for f in other.key[0]:
-                    known = logs[f.cause.id].get(f.form.name, -np.inf)
-                    logs[f.cause.id][f.form.name] = float(np.logaddexp(known, other.log))
-        return logs
-
-    def _fit(self, own: _Combination, near: Fit, forms: Forms) -> None:
-        """Fits a combination exactly from where its likeliest set is expected."""
-        terms, s = self.linear.terms, own.best
+    def _fit(self, key: Key, s: TermSet, near: Fit, forms: Forms) -> None:
+        """Fits sets alike exactly from where the likeliest of them is expected."""
+        terms = self.linear.terms
         a = White.of(self.linear.covariance(s.scatter.scales, s.wide)).back(self.linear.residual)
         z = near.look.sd**2 * (near.look.jacobian[:, : self.whole.nz].T @ a)
         t = np.array(s.widths) * (self.linear.sized(s.sized).T @ a)
@@ -297,7 +272,7 @@ class Weighing:
         extras = tuple(Extra(terms[k], width) for k, width in s.scatter.beside)
         start = Begin(z, np.array(s.scatter.scales), near.look.laws)
         with suppress(SolveError):
-            self._fit_exactly(self._beside(own.key[2], extras), acting, start, extras, forms)
+            self._fit_exactly(self._beside(key[2], extras), acting, start, extras, forms)
 
     def _fit_exactly(
         self,
@@ -347,3 +322,15 @@ class Weighing:
             float(chdtrc(self.problem.m - len(self.problem.aside), e @ e)),
             self.prior,
         )
+
+
+def _forms(own: Key, logs: Mapping[Key, float]) -> dict[str, dict[str, float]]:
+    """Cause -> form -> log weight, over the sets alike that differ in their forms alone."""
+    causes = {f.cause.id for f in own[0]}
+    found: dict[str, dict[str, float]] = {c: {} for c in causes}
+    for key, log in logs.items():
+        if key[1:] == own[1:] and {f.cause.id for f in key[0]} == causes:
+            for f in key[0]:
+                known = found[f.cause.id].get(f.form.name, -np.inf)
+                found[f.cause.id][f.form.name] = float(np.logaddexp(known, log))
+    return found
