@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
+import gearheat as gh
 import numpy as np
 import pytest
 from gearheat.model.machines.roles import Roles
@@ -22,6 +24,8 @@ from gearheat.tools.diagnose.model.formula import Formula
 from gearheat.tools.diagnose.model.march import STEADY, Phases, march
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.model.plant import Plant, with_additions
+from gearheat.tools.diagnose.request import Request, read
+from gearheat.tools.diagnose.setting import setting
 
 FOLDER = Path(marching.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
@@ -214,3 +218,22 @@ def test_a_steady_state_at_the_steep_middle_of_a_thermostat_is_met(tmp_path: Pat
     plant = Plant(with_additions(scenario.spec, (), ()), ("housing.C",), given, shown)
     found = Observed(plant, data, (), {}, {}).shown_by(np.zeros(0), ())
     assert found == pytest.approx(np.repeat([state[name][0] for name in shown], 2), abs=1e-3)
+
+
+def test_a_steady_state_is_the_one_that_warming_up_comes_to(tmp_path, monkeypatch) -> None:
+    """Thin films make friction grow with the oil's temperature: this unit has a hotter steady state, too."""
+    rig, data, card = tmp_path / "mine.toml", tmp_path / "data.csv", tmp_path / "card.json"
+    known = {"stages": "bevel,helical", "ratio": 10, "power": "90 kW", "speed": "1485 rpm", "oil": "ISO VG 320 PAO"}
+    housing = {"fan": True, "housing": "890x436x528 mm", "oil_volume": "16.4 l", "centre_distance": "268 mm"}
+    gh.new("mine", **known, **housing, out=rig)
+    points = enumerate(product(np.linspace(400, 1600, 25), np.linspace(500, 6500, 25), (10, 35)))
+    rows = "".join(f"{k},{n},{tau},{60 + k % 7},{room}\n" for k, (n, tau, room) in points)
+    data.write_text(f"point,n_input_rpm,T_output_Nm,T_oil_C,T_amb_C\n{rows}")
+    card.write_text('{"protocol": "steady", "channels": {"T_oil_C": {"repeat_sd": "0.2 K"}}}')
+    inputs = read(Request(str(rig), data, card=card))
+    o = setting(inputs.scenario, inputs.card, inputs.data, inputs.data).problem.data
+    z = np.array([float(nuisance.name == "thin films") for nuisance in o.nuisances])
+    found = o.shown_by(z, [])
+    monkeypatch.setattr(marching, "STEADY", 60.0 * 1.4 ** np.arange(60))
+    o = setting(inputs.scenario, inputs.card, inputs.data, inputs.data).problem.data
+    assert found == pytest.approx(o.shown_by(z, []), abs=1e-6)
