@@ -94,19 +94,12 @@ def explain_as_well(problem: Problem, fit: Fit, aside: Aside) -> tuple[str, ...]
 def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
     """How far each reading that is set aside lies from what the others say, in standard deviations of that."""
     white, e = fit.linear(problem)
-    V, inverse, a = white.L @ white.L.T, white.inverse, white.turned(e)
-    found = []
+    inverse, a, found = white.inverse, white.turned(e), []
     for aside in sorted(problem.aside):
         term = problem.far(aside, fit.look)
-        if term.variance is not None:
-            i = aside.number
-            spread = 1 / inverse[i, i] - term.variance[i]
-            own = a[i] / inverse[i, i] / np.sqrt(max(spread, 1e-12 * V[i, i]))
-        else:
-            assert term.columns is not None
-            c = term.columns[:, 0] / problem.FAR
-            length = c @ inverse @ c
-            own = (c @ a) / np.sqrt(length) / np.sqrt(max(1 - (problem.FAR**2 - 1) * length, 1e-9))
+        c = (term.columns[:, 0] if term.variance is None else np.sqrt(term.variance)) / problem.FAR
+        length = c @ inverse @ c
+        own = (c @ a) / np.sqrt(length * max(1 - problem.FAR**2 * length, 1e-9))
         found.append((aside, float(own)))
     return found
 

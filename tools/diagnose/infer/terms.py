@@ -111,10 +111,9 @@ def remainders(problem: Problem) -> Iterator[Term]:
     What errs by test in one sensor alone is its own error, and has a name.
     """
     o = problem.data
-    warm = [i for i, s in enumerate(o.read) if s.kind.endswith("_temp")]
-    other = [i for i in range(len(o.read)) if i not in warm]
-    groups = [warm, *([[i] for i in warm] if len(warm) > 1 else []), *([other, warm + other] if other else [])]
-    groups = [g for g in groups if g]
+    warm = tuple(i for i, s in enumerate(o.read) if s.kind.endswith("_temp"))
+    other = tuple(i for i in range(len(o.read)) if i not in warm)
+    groups = [g for g in dict.fromkeys([warm, *((i,) for i in warm), other, warm + other]) if g]
     tests = o.campaign.test[o.row]
     kernels = [("smooth in the conditions", problem.alike, groups)]
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:

@@ -129,7 +129,7 @@ def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
         fades = fading(o, linear) if any(c.campaign.series for c in campaigns) else np.zeros((o.m, 0))
         columns = []
         for name in sensors:
-            index = next((i for i, s in enumerate(o.read) if s.name == name), -1)
+            index = next((i for i, s in enumerate(o.read) if s.name == name), len(o.read))
             kind, values = next((s.kind, o.campaign.values[name]) for o in campaigns for s in o.read if s.name == name)
             sd = REMAINDER["temperature"] if kind.endswith("_temp") else REMAINDER["other"] * np.nanmean(np.abs(values))
             mine = (o.entries.sensor == index)[:, None]
