@@ -96,8 +96,7 @@ def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
     white, e = fit.linear(problem)
     inverse, a, found = white.inverse, white.turned(e), []
     for aside in sorted(problem.aside):
-        term = problem.far(aside, fit.look)
-        c = (term.columns[:, 0] if term.variance is None else np.sqrt(term.variance)) / problem.FAR
+        c = problem.far(aside, fit.look).effects[:, 0] / problem.FAR
         length = c @ inverse @ c
         own = (c @ a) / np.sqrt(length * max(1 - problem.FAR**2 * length, 1e-9))
         found.append((aside, float(own)))
