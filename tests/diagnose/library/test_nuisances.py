@@ -3,11 +3,13 @@
 import math
 from dataclasses import replace
 
+import gearheat as gh
 import pytest
+from gearheat.model.machines.roles import Roles
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
-from gearheat.scenarios.load import list_rigs
+from gearheat.scenarios.load import list_rigs, load
 from gearheat.scenarios.nuisances import NEAREST, nuisances
 from gearheat.tools.diagnose.library.extras import thin_film_friction
 from gearheat.tools.diagnose.library.forms import Context
@@ -122,3 +124,10 @@ def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):
     assert none["oil.T"][0] == pytest.approx(c.nominal["oil.T"][0], abs=1e-4)
     assert some["oil.T"][0] > none["oil.T"][0] + 0.1
     assert thin_film_friction(Context(case("harmonic_printed").roles, c.ranges, c.sensors)) is None
+
+
+def test_a_healthy_campaign_tells_the_flow_of_a_fan(tmp_path):
+    gh.new("mine", stages="helical", ratio=3, power="30 kW", speed="1450 rpm", fan=True, out=tmp_path / "mine.toml")
+    scenario = load(tmp_path / "mine.toml")
+    found = {n.name: n for n in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties)}["flow of fans"]
+    assert found.paths.keys() == {"fan.k_v"} and found.sd == 0.0 < found.wide
