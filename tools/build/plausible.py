@@ -94,7 +94,7 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         housing = "" if around.boxed else ", or give the housing that has one by --housing"
         yield (
             f"it needs no fan: without one the oil is at {bare['oil_degC']:.1f} degC, the efficiency"
-            f" {100 * bare['efficiency']:.2f} %. Leave out --fan{housing}."
+            f" {100 * bare['efficiency']:.2f} %. Leave out --fan, unless the unit has one{housing}."
         )
     hot = sizes["oil_degC"] > WARM[1]
     if hot:
