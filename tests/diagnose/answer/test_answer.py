@@ -302,6 +302,17 @@ def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> N
     assert np.isfinite(logged.dwell).all()
 
 
+def test_all_room_probes_are_checked_in_one_experiment(clean: tuple[Setting, Found]) -> None:
+    setting, found = clean
+    campaign = found.problem.data.campaign
+    room = next(s for s in campaign.given if s.kind == "ambient")
+    values = campaign.values | {"T_hall": campaign.values[room.name]}
+    two = replace(campaign, sensors=(*campaign.sensors, replace(room, name="T_hall")), values=values)
+    tried = {e.id: e for e in list_experiments(two, setting.nominal.value)}
+    assert len(tried) == len(list_experiments(two, setting.nominal.value))
+    assert [check.sensor for check in tried["room_probe"].checks] == [room.name, "T_hall"]
+
+
 def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]) -> None:
     """At most the speed of the operating point, and no room below 5 degC, nor one that is hardly colder."""
     setting, campaign = wrong[0], wrong[1].problem.data.campaign

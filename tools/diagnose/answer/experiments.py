@@ -142,15 +142,12 @@ def _checks(campaign: Campaign) -> Iterator[Experiment]:
         top = {s.name: float(np.nanmax(np.abs(campaign.values[s.name]))) for s in torques}
         lever = tuple(Check(s.name, (0.0, top[s.name]), TARE * s.repeat_sd, 5e-4 * top[s.name]) for s in torques)
         yield Experiment("lever_arm", "all torque transducers under a lever arm, empty and loaded", checks=lever)
-    for s in campaign.given:
-        typical = float(np.nanmean(np.abs(campaign.values[s.name])))
-        if s.kind == "ambient":
-            check = Check(s.name, (typical,) * 4, s.repeat_sd, THERMOMETER)
-            text = "a reference thermometer for the room, away from the machine"
-            yield Experiment("room_probe", text, checks=(check,))
-        if s.kind == "speed":
-            check = Check(s.name, (typical,) * 2, STROBOSCOPE * typical)
-            yield Experiment("stroboscope", "the speed by a stroboscope", checks=(check,))
+    means = {s.name: float(np.nanmean(np.abs(campaign.values[s.name]))) for s in campaign.given}
+    of_kind = {kind: [s for s in campaign.given if s.kind == kind] for kind in ("ambient", "speed")}
+    if rooms := tuple(Check(s.name, (means[s.name],) * 4, s.repeat_sd, THERMOMETER) for s in of_kind["ambient"]):
+        yield Experiment("room_probe", "a reference thermometer for the room, away from the machine", checks=rooms)
+    if speeds := tuple(Check(s.name, (means[s.name],) * 2, STROBOSCOPE * means[s.name]) for s in of_kind["speed"]):
+        yield Experiment("stroboscope", "the speed by a stroboscope", checks=speeds)
 
 
 def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:

@@ -150,7 +150,7 @@ class Gain(Model):
         without: Number
         with_: Number = Field(alias="with")
 
-    scheme: str = Field(description="leave-one-operating-point, -speed, -load, -oil, -segment, ...")
+    scheme: str = Field(description="leave-one-operating-point, -speed, -load or -oil; leave-out-tests or -spans")
     nested: bool = True
     channel: str
     unit: str = "K"

@@ -170,7 +170,7 @@ def experiments(findings: Findings) -> list[Table]:
         for e in findings.next_experiment[:MOST]
     ]
     exposing = [(name_of(c.id), c.exposes) for c in list_causes(findings) if c.exposes]
-    note = "Distances in standard deviations; below 3 two causes look alike."
+    note = f"Distances in standard deviations; below {APART:g} two causes look alike."
     return [
         Table("What to measure next", ("experiment", "separates", "now", "then"), rows, note),
         Table("What shows a cause directly", ("cause", "experiment"), exposing),
