@@ -9,6 +9,7 @@ from gearheat.tools.diagnose.answer.findings import (
     Alarm,
     Answer,
     CauseSet,
+    FormShare,
     Hypothesis,
     Played,
     Remainder,
@@ -295,6 +296,13 @@ def test_a_regime_names_its_sides() -> None:
     assert phrases.regime(both) == "only at n_carrier above 120 rpm, film below 3 mm²/s²"
     later = both.model_copy(update={"regime": {"order [1]": (0.868, None)}, "since": "test 31 (2024-03-05)"})
     assert phrases.where(later) == "from test 31 (2024-03-05) on"
+
+
+def test_another_instrument_that_may_err_is_told() -> None:
+    shares = {"T_input": 0.82, "T_output": 0.13, "T_middle": 0.05}
+    forms = tuple(FormShare(name=name, share=share) for name, share in shares.items())
+    found = cause(OFFSET, 0.9)
+    assert phrases.where(found.model_copy(update={"forms": forms})) == "T_input, or T_output: 13 %"
 
 
 def test_names() -> None:

@@ -13,6 +13,8 @@ from ..library.entries import TABLE
 
 #: Parts of a value are named where they are not more than these.
 FEW_PARTS = 3
+#: Share of a cause from which another instrument is named beside the likeliest one.
+ANOTHER = 0.1
 #: Share by which one error must exceed another to be worse.
 NOTICEABLE = 0.005
 #: The same played over the data, where a fit of all channels trades a little of one.
@@ -149,10 +151,15 @@ def regime(found: Cause) -> str:
 
 
 def where(found: Cause) -> str:
-    """In which parts and where a cause acts; empty where it acts in all of them everywhere."""
+    """In which parts and where a cause acts; empty where it acts in all of them everywhere.
+
+    An instrument that errs may be another one of its kind, which is told with its share.
+    """
     limits = regime(found)
     name = found.forms[0].name if found.forms else ""
     parts = [part for part in name.split(", ") if not (limits and part.startswith(LIMITED))]
+    others = found.forms[1:] if found.id.startswith("sensor.") and not limits else ()
+    parts += [f"or {form.name}: {percent(form.share)}" for form in others if form.name and form.share > ANOTHER]
     return ", ".join(filter(None, (*parts, limits)))
 
 
