@@ -9,6 +9,7 @@ from gearheat.tools.diagnose.answer.findings import (
     Alarm,
     Answer,
     CauseSet,
+    Channel,
     FormShare,
     Hypothesis,
     Played,
@@ -299,10 +300,13 @@ def test_a_regime_names_its_sides() -> None:
 
 
 def test_another_instrument_that_may_err_is_told() -> None:
-    shares = {"T_input": 0.82, "T_output": 0.13, "T_middle": 0.05}
-    forms = tuple(FormShare(name=name, share=share) for name, share in shares.items())
-    found = cause(OFFSET, 0.9)
-    assert phrases.where(found.model_copy(update={"forms": forms})) == "T_input, or T_output: 13 %"
+    shares = {"T_input": 0.72, "T_input, opposite signs": 0.1, "T_output": 0.08, "T_output, opposite signs": 0.05}
+    forms = tuple(FormShare(name=name, share=share) for name, share in (shares | {"T_middle": 0.05}).items())
+    found = cause(OFFSET, 0.9).model_copy(update={"forms": forms})
+    torques = [Channel(name=name, kind="torque", unit="N.m") for name in ("T_input", "T_output", "T_middle")]
+    assert phrases.where(found, torques) == "T_input, or T_output: 13 %"
+    alone = found.model_copy(update={"forms": forms[:1]})
+    assert phrases.where(alone, torques) == "T_input"
 
 
 def test_names() -> None:

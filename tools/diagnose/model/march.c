@@ -216,7 +216,8 @@ static void consistent(Runs *R) {
   }
 }
 
-/* A stage at a share of the phase, from a line through the last two or else from the last; lanes that fail are out. */
+/* A stage at a share of the phase, from a line through the last two or else from the last; lanes that fail are out. In
+   the long steps to a steady state, which grow, such a line overshoots, and may end in a hotter steady state. */
 static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   const Plant *P = R->plant;
   const double ahead = R->now > R->before && !R->duty->steady ? (share - R->now) / (R->now - R->before) : 0;

@@ -90,7 +90,7 @@ def _picture(findings: Findings, found: Picture) -> dict[str, Any]:
     """A picture of a cause and the sentences beside it."""
     told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(svg(picture(findings, found)))}
     if cause := findings.cause(found.cause):
-        size = ", ".join(filter(None, (phrases.size(cause), phrases.where(cause))))
+        size = ", ".join(filter(None, (phrases.size(cause), phrases.where(cause, findings.channels))))
         told |= {"size": size, "doc": cause.doc, "percent": phrases.percent(cause.probability, cause.mc_error)}
     return told
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from ....model.core.faults import name_all
 from ..answer.evidence import Estimate, GrossReading, NuisanceOff, ResidualMean, VarianceComponent
-from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Gain, Impact
+from ..answer.findings import UNEXPLAINED, Answer, Cause, Channel, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
 from ..library.entries import TABLE
 
@@ -150,17 +150,18 @@ def regime(found: Cause) -> str:
     return f"only at {', '.join(parts)}" if parts else ""
 
 
-def where(found: Cause) -> str:
+def where(found: Cause, instruments: Iterable[Channel] = ()) -> str:
     """In which parts and where a cause acts; empty where it acts in all of them everywhere.
 
-    An instrument that errs may be another one of its kind, which is told with its share.
+    Which other one of the instruments may err instead is told with its share.
     """
     limits = regime(found)
     name = found.forms[0].name if found.forms else ""
     parts = [part for part in name.split(", ") if not (limits and part.startswith(LIMITED))]
-    others = found.forms[1:] if found.id.startswith("sensor.") and not limits else ()
-    parts += [f"or {form.name}: {percent(form.share)}" for form in others if form.name and form.share > ANOTHER]
-    return ", ".join(filter(None, (*parts, limits)))
+    shares = {s.name: sum(f.share for f in found.forms if f.name.partition(", ")[0] == s.name) for s in instruments}
+    shares.pop(name.partition(", ")[0], None)
+    others = [f"or {other}: {percent(share)}" for other, share in shares.items() if share > ANOTHER]
+    return ", ".join(filter(None, (*parts, limits, *others)))
 
 
 def answer(found: Answer) -> str:

@@ -98,7 +98,9 @@ def quality(findings: Findings) -> list[Table]:
 def causes(findings: Findings) -> list[Table]:
     """Causes with their sizes, hypotheses, and what each channel says on its own."""
     listed = list_causes(findings)
-    ranked = [(percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), c.id) for c in listed]
+    ranked = [
+        (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c, findings.channels), c.id) for c in listed
+    ]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
     joint = findings.hypotheses
     together = [

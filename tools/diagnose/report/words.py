@@ -251,7 +251,7 @@ def _size(findings: Findings) -> str:
             sizes = []
             for c in (findings.cause(member) for member in group):
                 if c is not None and c.parameters:
-                    place = f" ({where})" if (where := phrases.where(c)) else ""
+                    place = f" ({where})" if (where := phrases.where(c, findings.channels)) else ""
                     size = f"{phrases.meaning(c.parameters[0])} {phrases.estimate(c.parameters[0])}"
                     sizes.append(f"{name_of(c.id)}{place}: {size}")
             if sizes:
