@@ -42,7 +42,8 @@ def test_forms_are_sound_and_neutral_at_size_zero(case, rig):
 def test_a_rig_with_what_causes_and_calibration_add_is_a_rig(case, rig, share, tmp_path):
     c, added = case(rig), {}
     for cause, form in ((x, f) for x in c.causes for f in x.forms if f.parts and not f.spread):
-        theta = {s.name: s.low + share * (s.high - s.low) for s in form.shapes} | {cause.size.name: cause.size.sd}
+        size = cause.size_of(form)
+        theta = {s.name: s.low + share * (s.high - s.low) for s in form.shapes} | {size.name: size.sd}
         added.setdefault(form.connections, Applied(cause.id, cause.doc, form, theta))
     films = thin_film_friction(Context(c.roles, c.ranges, c.sensors))
     also = [calibration(films, dict.fromkeys(films.paths, 0.1))] if films else []
@@ -109,7 +110,8 @@ def test_symbols_and_arrays_of_rows_give_the_same(case, rig):
             added = {f"{p.name}.{key}": v for p in form.parts for key, v in p.values.items()}
             base = {path: np.full(ROWS, v) for path, v in (own | added).items()}
             shows = {s.name: c.ranges.mid[s.name] * rng.uniform(0.8, 1.2, ROWS) for s in c.sensors}
-            theta = {cause.size.name: 0.4 * cause.size.sd}
+            size = cause.size_of(form)
+            theta = {size.name: 0.4 * size.sd}
             theta |= {shape.name: float(shape.at(rng.normal())) for shape in form.shapes}
             numbers = said(form, theta, Row(base=base, sensors=shows, **FEATURES), shows)
             b, s, r = Symbols(base), Symbols(shows), Symbols(shows)

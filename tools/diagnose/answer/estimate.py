@@ -69,7 +69,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     centre = float(w @ m)
     spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
     one = best.fit.look.acting[best.fit.causes.index(cause)]
-    s = one.formula.cause.size
+    s = one.formula.extent
     ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
     return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best, one))
 
@@ -121,7 +121,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     logs = [white.log_density(white(r)) for white in whites]
     share = np.cumsum(np.exp(np.array(logs) - np.logaddexp.reduce(logs)))
     mine = next(f for f in found.formulas if (f.cause.id, f.form.name) == (cause, extra.form))
-    of, ends = mine.cause.size, [float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)]
+    of, ends = mine.extent, [float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975)]
     told = _told(of, [of.sd * end for end in ends], mine.form.scale)
     doc = of.doc if "standard deviation" in of.doc else f"standard deviation of: {of.doc}"
     return (told.model_copy(update={"doc": doc, "at_bound": ""}),)

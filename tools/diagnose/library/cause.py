@@ -121,6 +121,7 @@ class Form:
         regime: quantity and side it is limited to ("speed above"), with the shape that holds the threshold; for words
         low: its size cannot be below this, whatever the cause's can
         scale: what is told of the cause's size: of an instrument its own error
+        size: how much of it there is, where it is not told as the cause's
     """
 
     name: str = ""
@@ -136,6 +137,7 @@ class Form:
     regime: Mapping[str, str] = field(default_factory=dict)
     low: float = -np.inf
     scale: float = 1.0
+    size: Size | None = None
 
 
 @dataclass(frozen=True)
@@ -166,6 +168,10 @@ class Cause:
     def family(self) -> str:
         """The class it counts with, itself where it has none."""
         return self.like.partition(":")[0] or self.id
+
+    def size_of(self, form: Form) -> Size:
+        """How much of it there is in one of its forms."""
+        return form.size or self.size
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,7 @@ def _of_form(
     base = _Known("parameter", {**stated, **added})
     shown = _Known("sensor", {s.name: ranges.mid.get(s.name, 300.0) for s in sensors})
     read = _Known("compared sensor", {s.name: shown[s.name] for s in sensors if s.role == "read"})
-    theta = {cause.size.name: 0.0} | {shape.name: float(shape.at(0.0)) for shape in form.shapes}
+    theta = {cause.size_of(form).name: 0.0} | {shape.name: float(shape.at(0.0)) for shape in form.shapes}
     row = Row(base=base, sensors=shown, order=0.5, direction=1.0, rise=ranges.rise, dwell=7200.0)
     own = {part.name for part in form.parts}
     laws: list[tuple[Callable[..., Any] | None, tuple[Any, ...], Mapping[str, float]]] = [

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import casadi as ca
 
 from ....model.machines.roles import Place
-from .cause import Cause, Form, Row, Theta, Values
+from .cause import Cause, Form, Num, Row, Theta, Values
 from .entries import TABLE, entry, scaled
 from .extras import Extras, Keys
 from .forms import Context, Regime, beside_own_law, no_less, weighed
 
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
+#: Share of the prior of an oil level that shows by what the oil wets, and what that form is called.
+WETS = 0.4
+CONTACT = "by what the oil wets"
 
 
 def causes(at: Context) -> Iterator[Cause]:
@@ -22,8 +25,7 @@ def causes(at: Context) -> Iterator[Cause]:
     places = at.roles.places
     if wet := _stirring(at):
         yield _extra_or_factor(at, "losses.churning", wet)
-        level = extra_loss(at, "losses.oil_level", wet[:1])
-        yield replace(level, forms=tuple(_wetting(form, at) for form in level.forms))
+        yield oil_level(at, wet[:1])
         yield extra_loss(at, "losses.windage", wet[:1])
     if at.roles.bath:
         yield oil_viscosity(at)
@@ -68,17 +70,35 @@ def _stirring(at: Context) -> Sequence[Place]:
     return [replace(place, inner=teeth[0].inner, outer=housing[0]) for place in places]
 
 
-def _wetting(form: Form, at: Context) -> Form:
-    """A loss with an oil level that wets more of the housing, too, where oil and housing meet."""
-    loss, paths = form.values, at.roles.scaled(*at.roles.wetted)
-    if loss is None or not paths:
-        return form
+def oil_level(at: Context, places: Sequence[Place]) -> Cause:
+    """An oil level off its mark: a loss that wets more of the housing, too, or contact with a share of the stirring."""
+    level, known, loss = extra_loss(at, "losses.oil_level", places), entry("oil_contact", at), at.ranges.loss
+    walls = at.roles.scaled(*at.roles.wetted)
+    inside = [path for path in at.roles.scaled(*at.roles.oil_side) if path not in walls]
 
-    def values(theta: Theta, row: Row) -> Values:
-        more = ca.exp(theta["wet"] * theta["P_ref"] / at.ranges.loss)
-        return {**loss(theta, row), **{path: row.base[path] * more for path in paths}}
+    def stirred(theta: Theta, row: Row) -> Theta:
+        return {**theta, "P_ref": theta["stir"] * loss * (ca.exp(theta["ln_factor"]) - 1)}
 
-    return replace(form, values=values)
+    def wetting(form: Form, exponents: Callable[[Theta], Mapping[str, Num]]) -> Form:
+        def values(theta: Theta, row: Row) -> Values:
+            own = form.values(theta, row) if form.values else {}
+            return {**own, **{path: row.base[path] * ca.exp(e) for path, e in exponents(theta).items()}}
+
+        return replace(form, values=values)
+
+    def by_loss(theta: Theta) -> dict[str, Num]:
+        return dict.fromkeys(walls, theta["wet"] * theta["P_ref"] / loss)
+
+    def by_contact(theta: Theta) -> dict[str, Num]:
+        e = theta["ln_factor"]
+        return dict.fromkeys(walls, e) | dict.fromkeys(inside, theta["inside"] * e)
+
+    if not walls:
+        return level
+    stirring = [replace(wetting(form, by_loss), weight=(1 - WETS) * form.weight) for form in level.forms]
+    made = Extras(known.part, at).losses(places, known.shapes, as_keys=stirred)
+    contact = [replace(wetting(form, by_contact), name=CONTACT, size=known.cause.size, weight=WETS) for form in made]
+    return replace(level, forms=(*stirring, *contact))
 
 
 def oil_viscosity(at: Context) -> Cause:

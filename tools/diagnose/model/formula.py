@@ -50,12 +50,15 @@ class Formula:
         cause, form: what it says
         sensors: names of all sensors
         reads: names of those that are compared
+
+    Attributes:
+        extent: how much of it there may be
     """
 
     def __init__(self, cause: Cause, form: Form, sensors: Sequence[str], reads: Sequence[str]) -> None:
-        self.cause, self.form = cause, form
+        self.cause, self.form, self.extent = cause, form, cause.size_of(form)
         self.t = ca.SX.sym("t", 1 + len(form.shapes))
-        theta = {cause.size.name: cause.size.sd * self.t[0]}
+        theta = {self.extent.name: self.extent.sd * self.t[0]}
         theta |= {shape.name: shape.at(self.t[1 + k]) for k, shape in enumerate(form.shapes)}
         self._base, self._sensors, self._reads = _Asked(), _Asked(sensors), _Asked(reads)
         features = ca.SX.sym("features", len(FEATURES))
@@ -90,7 +93,7 @@ class Formula:
     @property
     def limits(self) -> tuple[float, float]:
         """Lowest and highest size, in prior half widths."""
-        size = self.cause.size
+        size = self.extent
         return max(self.form.low, size.low) / size.sd, size.high / size.sd
 
     def theta(self, t: np.ndarray) -> dict[str, float]:
