@@ -237,6 +237,7 @@ class _Reader:
             start_by_room=self.card.protocol.T_start_minus_amb_K,
             room_begin=self.card.protocol.ambient_start_minus_reading_K,
             names=tuple(names[row] if "test" in self.context else str(k + 1) for k, row in enumerate(starts)),
+            ordered="order" in self.context,
             others=self._others(rows),
             warnings=(*unused, *order_warnings(cells)),
         )

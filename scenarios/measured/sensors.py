@@ -167,6 +167,11 @@ class _Sensors:
     def _drive(self) -> None:
         """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
         named = [i.reads for i in self.found.values() if i.role == "given"]
+        self.problems += [
+            f'{self.card.name}: several sensors of {path} are given. Give all but one of them the role "read".'
+            for path in dict.fromkeys(named)
+            if named.count(path) > 1
+        ]
         protocol = self.scenario.protocol
         inputs = self.scenario.inputs()
         self.problems += [
@@ -278,12 +283,17 @@ class _Sensors:
             column=instrument.column,
             reads=instrument.reads,
             kind=kind,
-            role=instrument.role or ("given" if instrument.reads in self.driven else "read"),
+            role=instrument.role or ("given" if self._drives(instrument) else "read"),
             unit=unit,
             repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
             offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
             signs=self._signs(instrument, kind),
         )
+
+    def _drives(self, instrument: Instrument) -> bool:
+        """Whether it is the one of its path that is given; further ones are compared with what that says."""
+        same = [i for i in self.found.values() if i.reads == instrument.reads and i.role != "read"]
+        return instrument.reads in self.driven and min(same, key=lambda i: i.role != "given") is instrument
 
     def _kind(self, instrument: Instrument) -> str:
         """What a sensor is, by what it reads."""

@@ -69,11 +69,6 @@ class Measured:
         """Thermometers of the surroundings."""
         return tuple(s for s in self.campaign.given if s.kind == "ambient")
 
-    def number(self, test: int) -> int:
-        """Number of a test: as in the file where all have one, else its place in the running order."""
-        names = self.campaign.names
-        return int(names[test]) if all(name.isdigit() for name in names) else test + 1
-
 
 @rows_told()
 def read_study(scenario: Scenario, data: Table | None = None, card: str | Path | None = None) -> Measured | None:

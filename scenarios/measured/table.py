@@ -126,6 +126,7 @@ class Campaign(Sensed):
         lines: line of each row in the file (n,)
         points: number of each row's reading as in the file (n,), 0 where a row was run and not read
         names: of the tests, as in the file (n_tests)
+        ordered: whether the file states the running order
         others: columns that no sensor has, as they stand in the file (n)
         series: logged courses of its tests, None where there are none
     """
@@ -149,6 +150,7 @@ class Campaign(Sensed):
     start_by_room: float = 0.0
     room_begin: float = 0.0
     names: tuple[str, ...] = ()
+    ordered: bool = True
     others: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     warnings: tuple[str, ...] = field(default=())
     series: Series | None = None
@@ -189,6 +191,10 @@ class Campaign(Sensed):
     def sensor(self, name: str) -> Sensor:
         """The sensor of a name."""
         return next(s for s in self.sensors if s.name == name)
+
+    def number(self, test: int) -> int:
+        """Number of a test: as in the file where all have one, else its place in the running order."""
+        return int(self.names[test]) if self.names and all(name.isdigit() for name in self.names) else test + 1
 
     def range_of(self, kind: str) -> tuple[float, float] | None:
         """Least and largest magnitude of the first given sensor of a kind; None without one."""

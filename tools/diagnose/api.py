@@ -215,6 +215,8 @@ def diagnose(
         problems.append("--predict needs a place for the result. Give --predictions FILE, too.")
     if outputs is not None and outputs.predictions is not None and predict is None:
         problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
+    if outputs is not None and outputs.extended is not None and data is None:
+        problems.append("--extended needs a table of readings beside the logs. Give DATA, too.")
     inputs = read(request, written, problems)
     from . import diagnosis  # what it needs loads slowly
 

@@ -36,6 +36,8 @@ ALONE = 0.1
 ROUGHLY = "values of this rig follow from rules and count as uncertain as its file says; a healthy reference tells more"
 #: Standard deviations at the usual size below which no reading moves with a cause.
 BLIND = 0.01
+#: The same from which the readings show it, whatever sensors they lack.
+PLAIN = 1.0
 
 
 def diagnose(inputs: Inputs, progress: Progress) -> Findings:
@@ -90,7 +92,9 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     seen = "thermometers" if all(s.kind.endswith("_temp") for s in data.read) else "readings"
     extended, cut = rig_file(made, found, leader)
     roughly = [ROUGHLY] if any(n.near < 1 for n in found.problem.data.nuisances) else []
-    blind = {one.cause: f"not visible in these {seen}" for one in isolability if one.visible < BLIND}
+    hidden = {one.cause: f"not visible in these {seen}" for one in isolability if one.visible < BLIND}
+    plain = {one.cause for one in isolability if one.visible >= PLAIN}
+    hidden |= {cause: why for cause, why in inputs.invisible.items() if cause not in plain}
     return Findings(
         **compose.common(made, found, decision),
         about=About(
@@ -106,7 +110,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             alpha=request.alpha,
             p_any=decision.p_any,
             p_omnibus=found.p_omnibus,
-            p_adequacy=decision.p_adequacy,
+            p_adequacy=None if np.isnan(decision.p_adequacy) else decision.p_adequacy,
             draws=len(found.drawn),
         ),
         data_quality=check_data(found, leader),
@@ -124,7 +128,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         calibrated=calibrated(made, found, leader),
         extended_rig=extended,
         predictions=predict(found, inputs.points) if inputs.points else (),
-        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in {**blind, **inputs.invisible}.items()),
+        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in hidden.items()),
         warnings=(*inputs.warnings, *roughly, *(f"in the extended rig {line}" for line in cut)),
     )
 

@@ -69,6 +69,7 @@ class Request:
             (0.0 < self.alpha < 1.0, alpha),
             (1 <= self.causes <= MOST, causes),
             (self.seed >= 0, f"--seed {self.seed} is below zero. Give 0 or more."),
+            (self.data or not self.predict, "--predict needs a table of readings beside the logs. Give DATA, too."),
             (self.data or not self.series, f"--series {lost} Name their table, too."),
             (self.reference or not self.reference_series, f"--reference-series {lost} Give --reference, too."),
         )

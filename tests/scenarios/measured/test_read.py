@@ -122,6 +122,19 @@ def test_another_drive_is_given_by_the_card(read, helical):
         )
 
 
+@pytest.mark.parametrize("path", ["room.T", "input.w"])
+def test_a_second_sensor_of_what_drives_is_compared(path, read, helical):
+    column = next(name for name in helical if name.startswith({"room.T": "T_amb", "input.w": "n_input"}[path]))
+    columns = {**helical, "another": [1.001 * v for v in helical[column]]}
+    second = f'[sensors.another]\nreads = "{path}"\nunit = "{column.rpartition("_")[2].replace("C", "degC")}"\n'
+    found = read("helical_two_stage", columns, second)
+    assert {s.role for s in found.sensors if s.reads == path} == {"given", "read"}
+    assert found.sensor("another").role == "read"
+    both = f'[sensors.{column.rpartition("_")[0]}]\nrole = "given"\n' + second + 'role = "given"\n'
+    with pytest.raises(DataError, match=f"several sensors of {path} are given"):
+        read("helical_two_stage", columns, both)
+
+
 def test_tests_stand_in_running_order_and_rows_in_sequence(read, planetary):
     order = [int(5 * (t - 1) % 6) + 1 for t in planetary["test"]]
     found = read("planetary", {**planetary, "order": order})

@@ -122,7 +122,7 @@ def temper(found: Found) -> Found:
     keys, tempered = answer_keys(found), logs.copy()
     wrong = np.array([bool(key) for key in keys])
     if not wrong.any():
-        return replace(found, probabilities=np.exp(logs))
+        return found.weighed(logs)
     power = POWER + (1 - POWER) * np.exp(logs[~wrong]).sum() ** (1 / FALLING)
     for key in filter(None, dict.fromkeys(keys)):
         own = [k for k, other in enumerate(keys) if other == key]
@@ -130,7 +130,7 @@ def temper(found: Found) -> Found:
         prior = np.logaddexp.reduce(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
         tempered[own] += (1 - power) * (prior - np.logaddexp.reduce(logs[own]))
     tempered[wrong] += np.logaddexp.reduce(logs[wrong]) - np.logaddexp.reduce(tempered[wrong])
-    return replace(found, probabilities=np.exp(tempered))
+    return found.weighed(tempered)
 
 
 def invisible(found: Found) -> set[str]:
@@ -212,7 +212,7 @@ def _class(cause: str, best: Hypothesis, members: Sequence[Member], found: Found
 
 
 def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -> float:
-    """Chi-square p of what a hypothesis leaves in some readings (k,), all if None.
+    """Chi-square p of what a hypothesis leaves in some readings (k,), all if None; NaN where nothing is left free.
 
     Whatever its scatter leaves free takes a degree of freedom.
     """
@@ -227,4 +227,5 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
     fitted = d > FREE
     e = white(r[kept])
     e = e - Q[:, fitted] @ (Q[:, fitted].T @ e)
-    return float(chdtrc(max(len(e) - int(fitted.sum()), 1), e @ e))
+    free = len(e) - int(fitted.sum())
+    return float(chdtrc(free, e @ e)) if free > 0 else np.nan

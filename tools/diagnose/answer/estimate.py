@@ -150,9 +150,9 @@ def first_test(campaign: Campaign, place: float) -> str:
     later = np.where(campaign.progress >= place, campaign.progress, np.inf)
     test = int(campaign.test[np.argmin(later)])
     date = campaign.date[test]
-    if campaign.names[test : test + 1] == ("",):  # of a log
+    if not (name := campaign.names[test] if campaign.names else str(test + 1)):  # of a log
         return date or f"span {test + 1} of {campaign.n_tests}"
-    return f"test {test + 1}{f' ({date})' if date else ''}"
+    return f"test {name}{f' ({date})' if date else ''}"
 
 
 def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | None, float | None]]:

@@ -168,7 +168,8 @@ def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
         main = campaign.driving(s.kind)
         scale = [test.get(s.kind) for test in experiment.tests]
         usual = float(np.nanmean(np.abs(campaign.values[main.name][rows]))) if main else 1.0
-        wanted = [own if v is None else own + v - usual if s.kind == "ambient" else own * v / usual for v in scale]
+        share = own / usual if usual else np.full(n, float(np.sign(np.nansum(campaign.values[s.name])) or 1.0))
+        wanted = [own if v is None else own + v - usual if s.kind == "ambient" else share * v for v in scale]
         values[s.name] = np.concatenate(wanted)
     return Campaign.of(
         campaign.name,

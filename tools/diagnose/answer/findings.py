@@ -62,7 +62,7 @@ class Alarm(Model):
     p_omnibus: P | None = Field(
         default=None, description="p of the readings under the calibrated model, no cause in mind"
     )
-    p_adequacy: P = Field(description="p of what is left after the top hypothesis; near 1 is too good to be true")
+    p_adequacy: P | None = Field(description="p of what the top hypothesis leaves; near 1 is too good to be true")
     null: Literal["bootstrap", "analytic"] = "bootstrap"
     draws: int | None = None
 

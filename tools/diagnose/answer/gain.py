@@ -55,15 +55,16 @@ def measure_gains(found: Found, asked: Options, progress: Callable[[float], None
     plans = schemes(problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, list[Gain]()
     for scheme, folds in plans.items():
-        errors = []
+        errors, ran = [], []
         for rows in folds:
             with suppress(SolveError):
                 held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
                 errors.append(foresee(found, held, options))
+                ran.append(rows)
             done += 1
             progress(done / total)
         sensors = range(len(problem.data.read) if errors else 0)
-        told += filter(None, (_gain(found, scheme, folds, errors, i, asked.seed) for i in sensors))
+        told += filter(None, (_gain(found, scheme, ran, errors, i, asked.seed) for i in sensors))
     oil = [s.name for s in problem.data.read if s.kind == "oil_temp"]
     return sorted(told, key=lambda g: g.channel not in oil)
 

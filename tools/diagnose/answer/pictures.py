@@ -36,8 +36,8 @@ def rows(found: Found, h: Hypothesis) -> Rows:
             measured=measured, nominal=nominal, extended=extended if h.fit.look.acting else (), sd=sd
         )
     return Rows(
-        row=tuple(range(1, c.n + 1)),
-        test=tuple(int(t) + 1 for t in c.test),
+        row=tuple(int(line) - 1 for line in c.lines),
+        test=tuple(c.number(int(t)) for t in c.test),
         direction=tuple(int(d) for d in c.direction),
         channels=told,
         quantities=quantities(c, o.sensors),

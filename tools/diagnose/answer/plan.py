@@ -10,6 +10,7 @@ from pydantic import Field
 
 from ..library.cause import Cause
 from .design import WORTH, Design, Effects, Pair, gain
+from .estimate import convert
 from .findings import APART, Isolability
 from .numbers import Model, Number
 
@@ -122,10 +123,11 @@ def rank_experiments(
             break
         together.append(best)
     sizes = {c.id: library[c.id].size for c in design.candidates}
-    causes = [
-        PlannedCause(id=n, size=s.name, usual=s.sd, unit=s.unit, visible=visible.visible(n), exposes=library[n].exposes)
-        for n, s in sizes.items()
-    ]
+    causes = []
+    for n, s in sizes.items():
+        unit, (usual,) = convert(s, [s.sd])
+        seen, exposes = visible.visible(n), library[n].exposes
+        causes.append(PlannedCause(id=n, size=s.name, usual=usual, unit=unit, visible=seen, exposes=exposes))
     return Plan(
         **common,
         verdict=decide(now, single, together),

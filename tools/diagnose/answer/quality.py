@@ -19,7 +19,6 @@ from ..infer.found import Found, Hypothesis
 from ..infer.problem import SET_ASIDE, Aside, Problem
 from . import channels
 from .decide import p_adequacy
-from .estimate import posterior
 from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, ResidualMean, VarianceComponent
 from .numbers import array
 
@@ -106,8 +105,7 @@ def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
 def values_off(found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
     """Nuisances beyond `OFF` of their prior, the farthest first."""
     plant, told = found.problem.data.plant, []
-    x, _ = posterior(found.problem, h)
-    for nuisance, z, sd in zip(found.problem.data.nuisances, x, h.fit.look.sd, strict=False):
+    for nuisance, z, sd in zip(found.problem.data.nuisances, h.fit.look.z, h.fit.look.sd, strict=False):
         if abs(z) <= OFF * sd:
             continue
         factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
@@ -153,9 +151,10 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
 
 
 def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
-    """Compared sensor -> p of what a hypothesis leaves in it."""
+    """Compared sensor -> p of what a hypothesis leaves in it, where it leaves something free."""
     own = channels.compared(found.problem.data)
-    return {s.name: p_adequacy(found, h, np.flatnonzero(mine)) for _, s, mine in own}
+    told = {s.name: p_adequacy(found, h, np.flatnonzero(mine)) for _, s, mine in own}
+    return {name: p for name, p in told.items() if not np.isnan(p)}
 
 
 def errors_as_filed(problem: Problem) -> dict[str, float]:
@@ -187,15 +186,16 @@ def list_repeats(found: Found) -> tuple[RepeatedPoint, ...]:
             sums, apart = unit * group.total[name], unit * group.difference[name] * (1.0 if both else np.nan)
             if np.isfinite(sums).sum() < 2:  # cells of this sensor are empty
                 continue
-            each = zip(group.tests, array(sums), array(apart), strict=True)
+            numbers = [campaign.number(k) for k in group.tests]
+            each = zip(group.tests, numbers, array(sums), array(apart), strict=True)
             told.append(
                 RepeatedPoint(
                     condition=condition(campaign, group),
                     channel=name,
                     unit=channels.unit_of_difference(sensor),
                     repeats=tuple(
-                        Repeat(test=k + 1, order=campaign.order[k], date=campaign.date[k], sum=a, difference=b)
-                        for k, a, b in each
+                        Repeat(test=test, order=campaign.order[k], date=campaign.date[k], sum=a, difference=b)
+                        for k, test, a, b in each
                     ),
                     sd=float(np.nanstd(sums, ddof=1)),
                     card=unit * repeats.stated(campaign, sensor) / (2**0.5 if both else 1.0),
@@ -209,7 +209,8 @@ def condition(campaign: Campaign, point: repeats.Repeat) -> str:
     said = [point.oil] if point.oil else []
     for name, value in point.conditions.items():
         sensor = campaign.sensor(name)
-        said.append(f"{float(channels.in_unit(sensor, np.array(value))):.0f} {channels.unit(sensor)}")
+        number = float(channels.in_unit(sensor, np.array(value)))
+        said.append(f"{number:{'.0f' if abs(number) >= 100 else '.3g'}} {channels.unit(sensor)}")
     return ", ".join(said)
 
 

@@ -129,7 +129,12 @@ class Found:
         hypotheses = tuple(replace(h, log_joint=h.log_joint + b) for h, b in zip(self.hypotheses, by, strict=True))
         with np.errstate(divide="ignore"):
             logs = np.log(self.probabilities) + by
-        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - np.logaddexp.reduce(logs)))
+        return replace(self, hypotheses=hypotheses).weighed(logs - np.logaddexp.reduce(logs))
+
+    def weighed(self, logs: np.ndarray) -> Found:
+        """The search with other log probabilities of its hypotheses, the most probable first."""
+        order = np.argsort(-logs, kind="stable")
+        return replace(self, hypotheses=tuple(self.hypotheses[k] for k in order), probabilities=np.exp(logs[order]))
 
     def log_bayes_factor(self, causes: Iterable[str]) -> float:
         """Of causes against none, free of their prior; nothing of causes that the search did not ask about.

@@ -54,8 +54,7 @@ class Applied:
     def told(self) -> str:
         """Cause, form and parameters."""
         form = f" ({self.form.name})" if self.form.name else ""
-        values = ", ".join(f"{name} = {phrases.number(float(v), 4)}" for name, v in self.theta.items())
-        return f"{self.id}{form}, {values}"
+        return ", ".join([f"{self.id}{form}", *(f"{k} = {phrases.number(float(v), 4)}" for k, v in self.theta.items())])
 
 
 @dataclass(frozen=True)
@@ -157,7 +156,8 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
     changed = _changed(form, one.theta, parameters(with_parts))
     if not changed:
-        return scenario, [f"{outside} {one.doc if form.values is None else 'It differs from test to test.'}"]
+        by_test = form.values is not None or form.spread
+        return scenario, [f"{outside} {'It differs from test to test.' if by_test else one.doc}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
     parts = [replace(p, name=names[p.name]) for p in form.parts]
     nets = [tuple(_renamed(port, names) for port in net) for net in form.connections]
@@ -233,12 +233,15 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> tuple[str, tuple[
         filled = {path: value for path, value in own.items() if path in known}
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
 
+    spreads = [(e.cause, e.of.formula.cause.doc, e.of.formula.form) for e in h.extras if e.cause and e.of.formula]
+    scattered = [Applied(cause, doc, Form(form.name, spread=form.spread or "test"), {}) for cause, doc, form in spreads]
+
     def at(x: np.ndarray) -> Extended:
         z, acting = Vector(found.problem, h.fit.look).split(x)
         told = values(found, z)
         added = [calibration(n, told) for n in found.problem.data.nuisances if n.parts]
         causes = [Applied(a.id, a.formula.cause.doc, a.formula.form, a.formula.theta(a.t)) for a in acting]
-        return extended(scenario, told, causes, data.name, len(oils), added)
+        return extended(scenario, told, [*causes, *scattered], data.name, len(oils), added)
 
     x = h.fit.look.x
     uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])

@@ -76,8 +76,6 @@ def _bars(findings: Findings) -> list[dict[str, str]]:
     if further := [c for c in findings.causes if c not in listed and c.probability >= LITTLE]:
         most = max(c.probability for c in further)
         rows.append((f"each of {len(further)} further causes at most", "", most, 0.0))
-    if findings.remainder is not None:
-        rows.append(("something outside the library", "", findings.remainder.probability, findings.remainder.mc_error))
     rows += [("nothing wrong", "", findings.nothing, 0.0), ("less probable than those listed", "", rest, 0.0)]
     return [
         {"name": name, "id": id, "percent": phrases.percent(p, error), "width": f"{100 * min(p, 1.0):.1f}"}

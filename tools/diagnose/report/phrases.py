@@ -179,6 +179,12 @@ def scatter(found: VarianceComponent) -> str:
     return f"{what} scatters by {scatters}; the card says {card} ({number(found.ratio, 2)} times)."
 
 
+def row(found: GrossReading) -> str:
+    """The row of a reading, with its file where that is not the data's."""
+    _, of, file = found.point.partition(" of ")
+    return f"row {found.row}{of}{file}"
+
+
 def gross(found: GrossReading) -> str:
     """A wrong reading, as a sentence."""
     places = (("line", found.line), ("point", found.point))
@@ -259,10 +265,11 @@ def doubt(findings: Findings) -> str:
     """
     found, useless = findings.gain, "Do not use the extended rig for predictions yet."
     if found is None:
+        fixed = {c.name: c.offset_sd for c in findings.channels}  # which a replay knows nothing of
         worse = [
             f"{channel} {number(p.rms_calibrated)} calibrated, {with_unit(p.rms_extended, p.unit)} extended"
             for channel, p in findings.played.items()
-            if p.rms_extended > (1 + WORSE) * p.rms_calibrated
+            if p.rms_extended > max((1 + WORSE) * p.rms_calibrated, fixed.get(channel) or 0.0)
         ]
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
         return f"{text} {useless}" if worse else ""

@@ -190,7 +190,7 @@ def _do(findings: Findings) -> str:
     """What to do now, the most pressing first."""
     steps = []
     if gross := findings.data_quality.gross:
-        rows = ", ".join(f"row {g.row} ({name_all([g.channel, *g.instead], 'or')})" for g in gross[:MOST])
+        rows = ", ".join(f"{phrases.row(g)} ({name_all([g.channel, *g.instead], 'or')})" for g in gross[:MOST])
         steps.append(f"Check the reading{'s' if len(gross) > 1 else ''} in {rows} in your records.")
     if findings.verdict == "consistent":
         if findings.data_quality.nuisances:
@@ -241,7 +241,8 @@ def _size(findings: Findings) -> str:
     if findings.impact and findings.answers:
         first = findings.answers[0]
         which = f"if it is {phrases.answer(first)}: " if findings.verdict == "ambiguous" else ""
-        which = "the likeliest of these answers: " if len(first.causes) > TOGETHER else which
+        if len(first.causes) > TOGETHER and len(findings.answers) > 1:
+            which = "the likeliest of these answers: "
         powers = {i.what for i in findings.impact.values() if i.unit == "W"}
         felt = [i for i in findings.impact.values() if i.unit == "W" or i.what not in powers]
         effects = "; ".join(phrases.impact(i) for i in felt if phrases.number(max(map(abs, i.ci95)), 2) != "0")
@@ -265,6 +266,8 @@ def _sure(findings: Findings) -> str:
     nothing = next((h for h in findings.hypotheses if not h.causes), None)
     if nothing is not None:
         said.append(f"Probability that nothing is wrong: {phrases.percent(nothing.probability, nothing.mc_error)}.")
+    if test.p_adequacy is None:
+        return " ".join(said)
     if test.p_adequacy < ADEQUATE:
         said.append(f"What is left is not noise ({phrases.p_value(test.p_adequacy)}): another effect is in the data.")
     elif test.p_adequacy > TOO_GOOD:
@@ -273,8 +276,15 @@ def _sure(findings: Findings) -> str:
             " of the card are too wide, or part of the effect is taken for noise."
         )
     else:
-        said.append(f"What is left looks like noise ({phrases.p_value(test.p_adequacy)}).")
+        off = [f", but for {name_all(odd)}" for odd in [_inadequate(findings)] if odd]
+        said.append(f"What is left looks like noise ({phrases.p_value(test.p_adequacy)}){''.join(off)}.")
     return " ".join(said)
+
+
+def _inadequate(findings: Findings) -> list[str]:
+    """Channels in which what is left is not noise, as seldom in all of them together as in one."""
+    each = findings.data_quality.adequacy
+    return [channel for channel, p in each.items() if p < ADEQUATE / len(each)]
 
 
 def _cannot_be(findings: Findings) -> str:
@@ -309,9 +319,10 @@ def _data(findings: Findings) -> tuple[str, ...]:
     quality = findings.data_quality
     said = [phrases.gross(g) for g in quality.gross]
     said += [phrases.scatter(v) for v in quality.variance if not 1 / SCATTER <= v.ratio <= SCATTER]
+    odd, most = _inadequate(findings), 1 - (1 - TOO_GOOD) / max(len(quality.adequacy), 1)
     for channel, p in quality.adequacy.items():
-        if p < ADEQUATE:
+        if channel in odd:
             said.append(f"What is left in {channel} is not noise ({phrases.p_value(p)}).")
-        elif p > TOO_GOOD:
+        elif p > most:
             said.append(f"What is left in {channel} is smaller than its stated scatter ({phrases.p_value(p)}).")
     return tuple(said)
