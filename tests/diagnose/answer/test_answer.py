@@ -11,7 +11,7 @@ import pytest
 from gearheat.model.errors import SolveError
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer import estimate, gain
-from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
+from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, p_adequacy, temper
 from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
@@ -303,6 +303,38 @@ def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> N
     assert more.values[room].max() < campaign.values[room].min() - 10.0
     logged = build_tests(campaign, next(e for e in tried if e.logged))
     assert np.isfinite(logged.dwell).all()
+
+
+def test_added_tests_have_the_load_that_is_asked_where_the_first_one_had_none(wrong: tuple[Setting, Found]) -> None:
+    setting, campaign = wrong[0], wrong[1].problem.data.campaign
+    torque = next(s.name for s in campaign.given if s.kind == "torque")
+    idle = replace(
+        campaign, values=campaign.values | {torque: np.where(campaign.test == 0, 0.0, campaign.values[torque])}
+    )
+    (low,) = (e for e in list_experiments(campaign, setting.nominal.value) if e.id == "low_load")
+    asked = [test["torque"] for test in low.tests]
+    assert np.abs(build_tests(idle, low).values[torque]) == pytest.approx(asked)
+    assert np.sign(build_tests(idle, low).values[torque]) == pytest.approx(np.sign(campaign.values[torque][0]))
+
+
+def test_points_without_a_running_order_stand_behind_the_campaign(wrong: tuple[Setting, Found]) -> None:
+    _, found = wrong
+    campaign = found.problem.data.campaign
+    last = replace(campaign, order=np.full(campaign.n_tests, campaign.order.max()))
+    assert np.array_equal(simulate(found, replace(campaign, ordered=False)), simulate(found, last), equal_nan=True)
+
+
+def test_nothing_is_said_of_what_is_left_where_nothing_is_free(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    assert np.isnan(p_adequacy(found, found.hypotheses[0], np.array([0])))
+
+
+def test_the_first_test_is_told_by_its_name_in_the_file(clean: tuple[Setting, Found]) -> None:
+    campaign = clean[1].problem.data.campaign
+    named = replace(campaign, names=tuple(f"{200 + k}" for k in range(campaign.n_tests)))
+    assert estimate.first_test(campaign, 0.0) == "test 1"
+    assert estimate.first_test(named, 0.0) == "test 200"
+    assert named.number(3) == 203
 
 
 def test_all_room_probes_are_checked_in_one_experiment(clean: tuple[Setting, Found]) -> None:

@@ -99,6 +99,16 @@ def test_a_series_needs_the_readings_of_its_tests() -> None:
     assert {"--series", "--reference-series"} <= {name for name, _ in request.files()}
 
 
+def test_logs_alone_predict_no_points_and_extend_no_rig(tmp_path: Path) -> None:
+    points = tmp_path / "points.csv"
+    outputs = Outputs(predictions=tmp_path / "p.csv", extended=tmp_path / "e.toml")
+    with pytest.raises(DataError) as caught:
+        diagnose_command(None, outputs, infer, logs=[DATA], predict=points)
+    told = "\n".join(caught.value.problems)
+    assert "--predict needs a table of readings" in told and "--extended needs a table of readings" in told
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_no_data_and_no_rig_are_told_together() -> None:
     with pytest.raises(DataError) as caught:
         diagnose_command(None, Outputs(), infer, "planetry")

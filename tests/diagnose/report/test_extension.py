@@ -99,6 +99,7 @@ def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * (1 + theta["G"] * row.order)}),
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-6 * (row.sensors["T_amb"] - 200)}),
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * theta["G"]}, spread="test"),
+        Form("anew with each mounting", spread="mounting"),
     ],
 )
 def test_instruments_and_days_are_comments(tmp_path: Path, form: Form) -> None:

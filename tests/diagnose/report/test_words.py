@@ -217,9 +217,12 @@ def test_a_remainder_beside_a_named_cause_is_said() -> None:
 
 def test_an_extension_that_is_worse_is_told_first() -> None:
     played = {"T_oil": Played(rms_calibrated=2.7, rms_extended=2.9, unit="K")}
+    oil = next(c for c in explained().channels if c.name == "T_oil")
     said = explained(played=played, gain=None).says
     assert said.do.startswith("Played over these data the extended rig is worse")
     assert "Do not use the extended rig" in said.do
+    within = explained(played=played, gain=None, channels=[oil.model_copy(update={"offset_sd": 3.0})])
+    assert "extended rig" not in within.says.do, "an error within the tolerance of the instrument"
 
 
 def test_readings_left_out_say_whether_the_extended_rig_is_used() -> None:
@@ -247,6 +250,16 @@ def test_plain_statistics_that_are_better_are_told() -> None:
 def test_left_overs_that_are_no_noise_or_too_small_are_told() -> None:
     for p, words in ((1e-4, "is not noise (p = 1e-4)"), (0.9999, "is smaller than the stated scatter")):
         assert words in explained(test=Alarm(alpha=0.05, p_any=1e-4, p_adequacy=p)).says.sure
+    assert "What is left" not in explained(test=Alarm(alpha=0.05, p_any=1e-4, p_adequacy=None)).says.sure
+
+
+def test_a_channel_whose_left_over_is_no_noise_is_named_beside_what_looks_like_noise() -> None:
+    quality = explained().data_quality
+    for p, odd in ((5e-3, False), (1e-3, True)):  # the smallest of three channels is below 1 % in 3 % of all campaigns
+        left = quality.model_copy(update={"adequacy": {"T_oil": p, "T_wall": 0.4, "T_sun": 0.6}})
+        said = explained(data_quality=left, test=Alarm(alpha=0.05, p_any=1e-4, p_adequacy=0.5)).says
+        assert (", but for T_oil." in said.sure) == odd
+        assert any("T_oil is not noise" in line for line in said.data) == odd
 
 
 @pytest.mark.parametrize(
