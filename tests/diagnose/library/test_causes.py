@@ -15,6 +15,7 @@ from gearheat.tools.diagnose.library.cause import Row, as_array
 from gearheat.tools.diagnose.library.check import parameters, problems
 from gearheat.tools.diagnose.library.extras import thin_film_friction
 from gearheat.tools.diagnose.library.forms import BY_LAW, Context
+from gearheat.tools.diagnose.library.losses import CONTACT
 from gearheat.tools.diagnose.library.registry import library
 from gearheat.tools.diagnose.report.extension import Applied, calibration, extended
 
@@ -200,6 +201,23 @@ def test_where_nothing_varies_there_are_no_thresholds(case):
     assert [p for x in causes for p in problems(x, c.scenario.spec, c.sensors, one)] == []
     limited = {x.id for x in causes for f in x.forms if f.regime and f.regime["quantity"] != "order above"}
     assert limited == set()
+
+
+def test_a_low_oil_level_wets_less_and_stirs_less(case):
+    """Beside a healthy campaign low oil shows by hot oil, not by the little that the wheels stir."""
+    c = case("helical_two_stage")
+    cause = c.cause("losses.oil_level")
+    form = next(f for f in cause.forms if f.name == CONTACT)
+    own = parameters(c.scenario.spec)
+    base = own | {f"{p.name}.{key}": v for p in form.parts for key, v in p.values.items()}
+    theta = {s.name: s.mean for s in form.shapes} | {cause.size_of(form).name: float(np.log(0.4)), "inside": 0.5}
+    found = form.values(theta, Row(base=base, sensors={}))
+    shares = {path: float(found[path] / own[path]) for path in c.roles.scaled(*c.roles.oil_side)}
+    walls = {path: shares.pop(path) for path in c.roles.scaled(*c.roles.wetted)}
+    assert list(walls.values()) == pytest.approx([0.4] * len(walls))
+    assert list(shares.values()) == pytest.approx([0.4**0.5] * len(shares))
+    (lost,) = (float(found[f"{part.name}.P_ref"]) for part in form.parts)
+    assert lost == pytest.approx(-0.6 * theta["stir"] * c.ranges.loss)
 
 
 def test_classes_that_count_as_one_answer(case):

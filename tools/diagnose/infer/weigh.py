@@ -212,7 +212,7 @@ class Weighing:
         ranked = sorted(self.hypotheses.items(), key=lambda item: -item[1].log_joint)
         (leader, best), acting = ranked[0], ranked[0][1].fit.look.acting
         joins: list[tuple[Key, Hypothesis, Acting | Extra | None]] = []
-        if leader not in self.exchanged and len(best.causes) > 1:
+        if leader not in self.exchanged and len(acting) + len(best.extras) > 1:
             joins = [*((leader, best, a) for a in acting), *((leader, best, e) for e in best.extras)]
         self.exchanged.add(leader)
         for n in range(1, len(acting)):
