@@ -136,7 +136,7 @@ def replay(
     """
     scenario, known = scenario_of(rig), read_card(None if card is None else Path(card))
     first = read_log(path_of(fit, name="--fit"), scenario, known)
-    own, _ = filter_of(scenario, first)
+    own = filter_of(scenario, first)
     pieces = _split_log(first, until)
     rivals = Rivals(pieces[0], own.given, own.read)
     others = [read_log(path, scenario, known) for path in paths_of(logs)]

@@ -18,9 +18,9 @@ from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
-from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question, window_length
+from .infer.logs import Fleet, Question, fleet, problem_of, question, window_length
 from .infer.problem import Aside
-from .infer.weigh import Options, weigh
+from .infer.weigh import Options, Progress, weigh
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
@@ -92,11 +92,7 @@ def read_logs(inputs: Inputs) -> Logs:
 
 
 def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
-    """What the logs of a request say: whether a machine has changed, and what.
-
-    Args:
-        inputs: what its files hold
-        progress: called with (stage, fraction done)
+    """What the logs of a request say: whether a machine has changed, and what; progress as of `diagnosis.diagnose`.
 
     Raises:
         DataError: all problems of the logs
@@ -118,7 +114,7 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
 def formulas_of(known: Fleet, log: Log) -> tuple[Formula, ...]:
     """Forms of all causes that logs with the sensors of one can show."""
     names, read = [s.name for s in log.sensors], [s.name for s in log.read]
-    return tuple(Formula(cause, form, names, read) for cause in moves(known.knobs) for form in cause.forms)
+    return tuple(Formula(cause, form, names, read) for cause in moves(known.filter.knobs) for form in cause.forms)
 
 
 def judged(
@@ -190,7 +186,7 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        warnings=tuple(filter(None, dict.fromkeys(_warnings(data)))),
+        warnings=tuple(dict.fromkeys(_warnings(data))),
     )
 
 
@@ -212,18 +208,13 @@ def check(data: Logs) -> None:
 
 
 def _warnings(data: Logs) -> Iterator[str]:
-    yield _lacking(data)
+    given = {"--reference-logs": data.reference, "--sibling-logs": data.siblings}
+    if lacks := " and ".join(name for name, logs in given.items() if not logs):
+        yield f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
     if data.reference and not data.logs[0].dated:
         yield "the logs have no dates: those in question count as two weeks after the reference. Give dates if not"
     for log in data.logs:
         yield from log.warnings
-
-
-def _lacking(data: Logs) -> str:
-    given = {"--reference-logs": data.reference, "--sibling-logs": data.siblings}
-    lacks = " and ".join(name for name, logs in given.items() if not logs)
-    said = "it is not known how healthy machines of this type differ: changes are judged by priors"
-    return f"without {lacks} {said}" if lacks else ""
 
 
 def _gross(logs: Sequence[Log]) -> list[GrossReading]:

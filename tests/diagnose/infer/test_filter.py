@@ -77,12 +77,14 @@ def test_bodies_begin_at_what_thermometers_show(tmp_path: Path) -> None:
     """Two thermometers of one oil, and a torque that is none."""
     scenario = load("planetary")
     log = read(record(tmp_path / "log.csv", scenario, 1, "T_oil", "T_oil2", "T_sun"), scenario)
-    own, knobs = filter_of(scenario, log)
+    own = filter_of(scenario, log)
     data = windows([log], own.given, own.read)
     begun, _ = own.start(data, np.zeros((len(data.read), len(own.read))))
     thermometers = data.read[:, 0, [own.read.index(name) for name in ("T_oil", "T_oil2")]]
-    assert begun == pytest.approx(np.repeat(thermometers.mean(axis=1)[:, None], own.nx, axis=1), abs=1.5)
-    error = own.run(data, np.zeros((len(data.read), len(knobs))), slopes=False).error
+    assert begun == pytest.approx(
+        np.repeat(thermometers.mean(axis=1)[:, None], len(own.plant.flat.states), axis=1), abs=1.5
+    )
+    error = own.run(data, np.zeros((len(data.read), len(own.knobs))), slopes=False).error
     assert np.nanmax(np.abs(error[:, :, 0])) < 3.0
 
 
@@ -92,7 +94,7 @@ def test_a_rig_with_a_load_is_driven_by_the_torque_of_the_log(tmp_path: Path) ->
     scenario = load(mine)
     assert scenario.given["output"] == ("load",)
     now, past = (record(tmp_path / f"{seed}.csv", scenario, seed) for seed in (1, 2))
-    assert "output.tau" in filter_of(scenario, read(now, scenario))[0].plant.u_place
+    assert "output.tau" in filter_of(scenario, read(now, scenario)).plant.u_place
     assert gh.diagnose(None, mine, logs=now, reference_logs=past, quick=True).verdict == "consistent"
 
 
@@ -203,9 +205,9 @@ def test_what_cannot_differ_is_no_knob(own_unit: Path) -> None:
 def test_what_factors_do_curves(own_unit: Path, tmp_path: Path) -> None:
     """A loss heats in proportion to its factor, and what lies before a conductance to one over it."""
     log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
-    own, knobs = filter_of(scenario, log)
-    bent, names = curves(own, windows([log], own.given, own.read)), [k.name for k in knobs]
-    z = np.zeros((2, len(knobs)))
+    own = filter_of(scenario, log)
+    bent, names = curves(own, windows([log], own.given, own.read)), [k.name for k in own.knobs]
+    z = np.zeros((2, len(own.knobs)))
     loss, oil_wall, gain = (names.index(n) for n in ("input_bearing_a: loss", "oil_wall: conductance", "n_input: gain"))
     z[:, [loss, oil_wall, gain]] = np.log([[0.5] * 3, [4.0] * 3])
     does, slope = bent.at(z)
@@ -221,9 +223,9 @@ def test_what_factors_do_curves(own_unit: Path, tmp_path: Path) -> None:
 def test_steps_of_a_sample_follow_what_is_fast(own_unit: Path, tmp_path: Path) -> None:
     """A stage of ten minutes is too long for what settles in some; more of them come nearer to the courses."""
     log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
-    own, knobs = filter_of(scenario, log)
+    own = filter_of(scenario, log)
     data = windows([log], own.given, own.read, 0)
-    at = np.zeros((len(data.read), len(knobs)))
+    at = np.zeros((len(data.read), len(own.knobs)))
     shown = {}
     for own.parts in (1, 4, 16):
         shown[own.parts] = own.run(data, at, free=True).shown
@@ -234,8 +236,8 @@ def test_steps_of_a_sample_follow_what_is_fast(own_unit: Path, tmp_path: Path) -
 @pytest.mark.parametrize(("moments", "parts"), [(False, 1), (False, 3), (True, 2)])
 def test_slopes_are_those_of_the_likelihood(own_unit: Path, tmp_path: Path, moments: bool, parts: int) -> None:
     log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
-    own, knobs = filter_of(scenario, log)
-    own.moments, own.parts, sd = moments, parts, np.array([k.sd for k in knobs])
+    own = filter_of(scenario, log)
+    own.moments, own.parts, sd = moments, parts, np.array([k.sd for k in own.knobs])
     data = windows([log], own.given, own.read)
     at = np.tile(0.3 * sd * np.random.default_rng(3).standard_normal(len(sd)), (len(data.read), 1))
 
@@ -244,7 +246,7 @@ def test_slopes_are_those_of_the_likelihood(own_unit: Path, tmp_path: Path, mome
         far = np.nansum(passed.error**2 / passed.variance, axis=2)
         return float(-(TAILS + len(own.read)) / 2 * np.log1p(far / TAILS).sum())
 
-    names = [k.name for k in knobs]
+    names = [k.name for k in own.knobs]
     slope = own.run(data, at).slope.sum(axis=0)
     for name in ("stage_1: friction", "cooling: conductance", "T_output: gain", "T_input: gain", "n_input: gain"):
         k = names.index(name)

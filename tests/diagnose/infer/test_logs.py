@@ -41,17 +41,17 @@ class Farm:
         empty = np.zeros(0)
         self.scenario = load("wind_turbine")
         self.like = Log("made", sensors(), {}, empty, empty, 600.0, empty, True)
-        self.filter, self.knobs = filter_of(self.scenario, self.like)
+        self.filter = filter_of(self.scenario, self.like)
         self.filter.parts = 8
         rng = np.random.default_rng(5)
-        self.machines = [differing(self.knobs, rng, MACHINES) for _ in range(3)]
+        self.machines = [differing(self.filter.knobs, rng, MACHINES) for _ in range(3)]
         past = [[self.log(m, q / 4, 10 * m + q) for q in range(PAST)] for m in range(3)]
         joined = [self.joined(logs, f"machine {m}") for m, logs in enumerate(past)]
         self.asked = cache(self._ask)
         self.fleet: Fleet = fleet(self.scenario, joined[:1], joined[1:], self.like)
 
     def log(self, machine: int, year: float, seed: int, change: np.ndarray | float = 0.0) -> Log:
-        z = self.machines[machine] + differing(self.knobs, np.random.default_rng([seed, machine]), YEARS)
+        z = self.machines[machine] + differing(self.filter.knobs, np.random.default_rng([seed, machine]), YEARS)
         return made(self.filter, self.like, seed, year, N, z + change)
 
     def joined(self, logs: list[Log], name: str) -> Log:
@@ -67,9 +67,9 @@ class Farm:
 
     def third_year(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> Log:
         """That of the first machine, in which a knob has moved in its last seasons."""
-        change = np.zeros((ASKED, N, len(self.knobs)))
+        change = np.zeros((ASKED, N, len(self.filter.knobs)))
         if name:
-            change[int(since * ASKED) :, :, [k.name for k in self.knobs].index(name)] = size
+            change[int(since * ASKED) :, :, [k.name for k in self.filter.knobs].index(name)] = size
         parts = [self.log(0, 3.0 + q / 4, seed + q, change[q]) for q in range(ASKED)]
         return self.joined(parts, "asked")
 
@@ -98,7 +98,7 @@ def test_a_year_like_others_has_no_alarm(farm: Farm, seed: int) -> None:
 def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: float) -> None:
     told = farm.asked(200, name, size, since)
     found = told.findings
-    cause = next(k.cause for k in farm.knobs if k.name == name)
+    cause = next(k.cause for k in farm.filter.knobs if k.name == name)
     assert found.nothing < 0.1
     first = found.causes[0]
     assert (
@@ -113,7 +113,7 @@ def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: fl
 
 
 def test_what_switches_has_no_curve(farm: Farm) -> None:
-    curved = {farm.knobs[j].name for j in farm.fleet.curves.of}
+    curved = {farm.filter.knobs[j].name for j in farm.fleet.curves.of}
     assert "bearing_1_loss: loss" in curved and "cooler: conductance" not in curved
 
 

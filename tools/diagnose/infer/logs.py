@@ -13,7 +13,7 @@ from ....scenarios.measured.logs import Log
 from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
-from ..library.knobs import Knob, knobs
+from ..library.knobs import knobs
 from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
@@ -23,6 +23,7 @@ from ..model.windows import WINDOW, Windows, windows
 from .levels import Levels, estimate, first_levels
 from .problem import Look, Problem
 from .walk import PASSES, curves, independent, suit, walk
+from .weigh import Progress
 
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05
@@ -44,8 +45,6 @@ LARGE = 0.3
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
-Progress = Callable[[str, float], None]
-
 
 @dataclass(frozen=True, eq=False)
 class Fleet:
@@ -53,7 +52,6 @@ class Fleet:
 
     Args:
         filter: the rig, compiled
-        knobs: what may differ
         past: windows of the healthy logs of the machine in question
         levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
@@ -64,7 +62,6 @@ class Fleet:
     """
 
     filter: Filter
-    knobs: tuple[Knob, ...]
     past: Windows
     levels: Levels
     share: float
@@ -96,8 +93,8 @@ class Fleet:
         return replace(self, levels=self.levels.within(number, away / (YEAR / 4)))
 
 
-def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
-    """A rig, driven by what logs give, and its knobs, compiled for logs with the sensors of one."""
+def filter_of(scenario: Scenario, log: Log) -> Filter:
+    """A rig with its knobs, driven by what logs give, compiled for logs with the sensors of one."""
     driven = drive_by(scenario, log.sensors)
     roles = Roles.of(driven.spec)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
@@ -110,7 +107,7 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     plant = Plant(flat, paths, [s.reads for s in log.given], [s.reads for s in log.read])
     bodies, states = plant.flat.bodies, plant.flat.states
     noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
-    return Filter(plant, found, log.given, log.read, noise), found
+    return Filter(plant, found, log.given, log.read, noise)
 
 
 def _pass(progress: Progress, logs: str) -> Callable[[int, float], None]:
@@ -150,14 +147,13 @@ def fleet(
         progress: told of each stage and the share done
         length: samples of a window that count
     """
-    own, found = filter_of(scenario, all_sensors)
+    own = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
-    sd = np.array([k.sd for k in found])
-    machines = 1 + len(siblings)
-    begun = first_levels(sd, machines)
+    sd = np.array([k.sd for k in own.knobs])
+    begun = first_levels(sd, 1 + len(siblings))
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, begun, 0.0, length, begun.mean, Curves({}, 0 * sd))
+        return Fleet(own, empty, begun, 0.0, length, begun.mean, Curves({}, 0 * sd))
     past = windows(logs, own.given, own.read, length)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
@@ -171,7 +167,7 @@ def fleet(
     levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, found, past.some(machine == 0), levels, share, length, at, bent, seasons)
+    return Fleet(own, past.some(machine == 0), levels, share, length, at, bent, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,20 +190,14 @@ class Question:
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
-    """Run the logs in question at the machine's knobs, then where each season has moved to.
-
-    Args:
-        found: what the healthy logs say
-        logs: of the machine
-        progress: told of each stage and the share done
-    """
+    """Run the logs in question at the machine's knobs, then where each season has moved to; progress as of `fleet`."""
     own, levels = found.filter, found.levels
     data = windows(logs, own.given, own.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
         suit(own, data, np.zeros((len(season), len(own.knobs))))
-    span, sd = _spans(data.time, season), np.array([k.sd for k in found.knobs])
+    span, sd = _spans(data.time, season), np.array([k.sd for k in own.knobs])
     wide = levels.covariance[0] + levels.season + np.diag(sd**2)
     step, own.learns = _pass(progress, "logs in question"), not found.share
     z, passed = walk(own, data, season, (found.at[0], wide), step)
@@ -280,4 +270,4 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     root = np.linalg.cholesky(found.levels.covariance[0])
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    return LogProblem(Logged(own.plant, campaign, found.knobs, told, root, asked.curves), season, found.levels)
+    return LogProblem(Logged(own.plant, campaign, own.knobs, told, root, asked.curves), season, found.levels)
