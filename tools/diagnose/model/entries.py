@@ -184,19 +184,15 @@ class Measured:
 
     def _hold(self, entries: Entries) -> None:
         self.entries = entries
-        #: Channel and row of each of the m entries, and what was measured.
+        #: Channel and row of each of the m entries, what was measured, and their number.
         self.kind, self.row, self.measured = entries.kind, entries.row, entries.measured
+        self.m = len(entries.measured)
 
     def only(self, kept: np.ndarray) -> Self:
         """The same with some of its entries (k,)."""
         found = copy(self)
         found._hold(self.entries.only(kept))
         return found
-
-    @property
-    def m(self) -> int:
-        """Number of entries."""
-        return len(self.measured)
 
     def over_rows(self, kind: int, *values: np.ndarray) -> np.ndarray:
         """Values of entries (m,), those of a sensor over the rows of the campaign (k, n), NaN where it has none."""

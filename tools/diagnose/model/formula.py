@@ -50,14 +50,12 @@ class Formula:
         cause, form: what it says
         sensors: names of all sensors
         reads: names of those that are compared
-
-    Attributes:
-        extent: how much of it there may be
     """
 
     def __init__(self, cause: Cause, form: Form, sensors: Sequence[str], reads: Sequence[str]) -> None:
-        self.cause, self.form, self.extent = cause, form, cause.size_of(form)
-        self.t = ca.SX.sym("t", 1 + len(form.shapes))
+        #: How much of it there may be, and the number of its parameters.
+        self.cause, self.form, self.extent, self.size = cause, form, cause.size_of(form), 1 + len(form.shapes)
+        self.t = ca.SX.sym("t", self.size)
         theta = {self.extent.name: self.extent.sd * self.t[0]}
         theta |= {shape.name: shape.at(self.t[1 + k]) for k, shape in enumerate(form.shapes)}
         self._base, self._sensors, self._reads = _Asked(), _Asked(sensors), _Asked(reads)
@@ -70,6 +68,8 @@ class Formula:
         pace = form.pace(theta, row) if form.pace else 1.0
         self.paths, self.given, self.read = tuple(values), tuple(truth), tuple(shown)
         self.paced = form.pace is not None
+        #: Paths of the values that it builds on.
+        self.bases = self._base.names
         #: Those of `paths` that the size itself changes; the others follow shapes alone.
         self.sized = tuple(p for p, v in values.items() if ca.jacobian(ca.SX(v), self.t[0]).nnz())
         self._arguments = [self.t, self._base.column, self._sensors.column, self._reads.column, features]
@@ -79,16 +79,6 @@ class Formula:
         self._theta = ca.Function("theta", [self.t], [ca.vertcat(*map(ca.SX, theta.values()))])
         self.names = tuple(theta)
         self._rows: dict[tuple[str, int], _Rows] = {}
-
-    @property
-    def bases(self) -> tuple[str, ...]:
-        """Paths of the values that it builds on."""
-        return self._base.names
-
-    @property
-    def size(self) -> int:
-        """Number of parameters."""
-        return int(self.t.numel())
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -119,33 +109,26 @@ class Formula:
         Returns:
             values (v, n), by t (v, n, k), by each path of base (v, n)
         """
-        value, by_t, by_base = self._evaluated(self._physics, t, base, sensors, {}, features)
+        value, by_t, by_base = self._evaluated(self._physics, t, features, base, sensors, {})
         return value, by_t, {name: by_base[:, :, i] for i, name in enumerate(self._base.names)}
 
     def instruments(
         self, t: np.ndarray, sensors: Mapping[str, np.ndarray], reads: Mapping[str, np.ndarray], features: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         """What the sensors `read` show (v, n), by t (v, n, k), by each true reading (v, n)."""
-        value, by_t, by_reads = self._evaluated(self._instruments, t, {}, sensors, reads, features)
+        value, by_t, by_reads = self._evaluated(self._instruments, t, features, {}, sensors, reads)
         return value, by_t, {name: by_reads[:, :, i] for i, name in enumerate(self._reads.names)}
 
     def _evaluated(
-        self,
-        function: Any,
-        t: np.ndarray,
-        base: Mapping[str, np.ndarray],
-        sensors: Mapping[str, np.ndarray],
-        reads: Mapping[str, np.ndarray],
-        features: np.ndarray,
+        self, function: Any, t: np.ndarray, features: np.ndarray, *known: Mapping[str, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Values and slopes by what is known: base, sensors and reads."""
         key = (function.name(), features.shape[1])
         if key not in self._rows:
             self._rows[key] = _Rows(function, features.shape[1])
         rows = self._rows[key]
         rows.given[0][:], rows.given[4][:] = t, features.T
-        for own, asked, given in zip(
-            rows.given[1:4], (self._base, self._sensors, self._reads), (base, sensors, reads), strict=True
-        ):
+        for own, asked, given in zip(rows.given[1:4], (self._base, self._sensors, self._reads), known, strict=True):
             for k, name in enumerate(asked.names):
                 own[:, k] = given.get(name, 0.0)
         value, by_t, by_other = rows()
@@ -157,12 +140,7 @@ Parts = Sequence[tuple[Formula, np.ndarray]]
 
 
 class _Rows:
-    """A function at n rows a call, without copies on the way.
-
-    Args:
-        function: of columns
-        n: number of rows
-    """
+    """A function of columns at n rows a call, without copies on the way."""
 
     def __init__(self, function: Any, n: int) -> None:
         self.given = [np.zeros((n, function.size1_in(i))) for i in range(function.n_in())]

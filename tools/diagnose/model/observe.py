@@ -38,8 +38,7 @@ class Observed(Measured):
 
     Args:
         plant: the rig
-        campaign: its readings
-        nuisances: what may differ from the rig file
+        campaign, nuisances: as for `Measured`
         oils: oil of a test -> values by path
         point: values of inputs that no sensor gives
     """
@@ -66,11 +65,9 @@ class Observed(Measured):
                 self.u[plant.u_place[path]] = value
         by_room = ~np.isfinite(campaign.T_start) & ~np.isfinite(campaign.room_start)
         room = np.array([s.kind == "ambient" for s in self.given])
-        #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
-        self.starts = 1.0 * by_room[:, None] * room
         #: Form and parameters at size zero -> as `_Look._neutral`, of those that build on no value of the rig.
         self.neutral: dict[tuple[Formula, bytes], tuple[np.ndarray, _Changes]] = {}
-        self._phases = duty(campaign, self.rows, self.starts)
+        self._phases = duty(campaign, self.rows, 1.0 * by_room[:, None] * room)
         at = self.entries
         #: Of each place that is read: its test, the run of that, and its number among the reads of a run.
         self.test = self.run = campaign.test[at.place_row]
@@ -221,7 +218,7 @@ class _Look:
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
         """The direction of a candidate's size, at its own shapes."""
-        slopes, wanted = self._neutral(formula, _none(t))
+        slopes, wanted = self._neutral(formula, np.append(0.0, t[1:]))
         setting = self._setting(wanted)
         sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
         self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
@@ -295,10 +292,10 @@ class _Look:
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
         o, names = self.o, [s.name for s in self.o.read]
-        effects, whole = self.seen().by[:, self.tried :], self.true
+        effects = self.seen().by[:, self.tried :]
         for k, (formula, t) in enumerate(self.candidates):
             if formula.read:
-                _, by_t, _ = self.instruments(formula, _none(t), whole)
+                _, by_t, _ = self.instruments(formula, np.append(0.0, t[1:]), self.true)
                 for i, name in enumerate(formula.read):
                     mine = o.entries.sensor == names.index(name)
                     effects[mine, k] += by_t[i, o.entries.at[mine], 0]
@@ -370,8 +367,3 @@ class _Look:
         for setting, path, i, v in self.tried_slopes:
             found.append((i, first + len(sizes) * (setting - 1) + sizes[path] if setting else place[path], v))
         return found
-
-
-def _none(t: np.ndarray) -> np.ndarray:
-    """The parameters of a form at size zero."""
-    return np.concatenate([[0.0], t[1:]])
