@@ -22,7 +22,7 @@ from .scales import most_likely
 #: Name of what makes a reading count for nothing.
 SET_ASIDE = "set aside"
 #: Shapes stay inside so many deviations.
-FAR = 2.4
+INSIDE = 2.4
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
 PACES = (1.0, 2.5)
 
@@ -54,7 +54,7 @@ class Acting:
     def bounds(self) -> np.ndarray:
         """Lowest and highest parameters (2, d)."""
         low, high = self.formula.limits
-        far = np.full(self.formula.size - 1, FAR)
+        far = np.full(self.formula.size - 1, INSIDE)
         return np.array([np.r_[low, -far], np.r_[high, far]])
 
     @property

@@ -225,7 +225,7 @@ class Linear:
         scales = np.where(np.abs(found - scatter.scales) > SCALE, found, scatter.scales)
         return replace(scatter, scales=tuple(scales.tolist()))
 
-    def covariance(self, scales: Sequence[float], beside: Iterable[tuple[int, float]] = ()) -> np.ndarray:
+    def covariance(self, scales: Sequence[float], beside: Iterable[tuple[int, float]]) -> np.ndarray:
         """Of the residual with some scales, beside terms of some widths (M, M)."""
         columns = self.sized(beside)
         return np.asarray(self.at(scales).covariance + self.known + columns @ columns.T)

@@ -86,7 +86,7 @@ def walk(
             passed = own.run(few, z[of], slopes=False)
         told, least = said.times(counted).summed(of, len(z)), value(passed, z)
         H = told.H + known
-        uphill, gained = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None], 0.0
+        uphill = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None]
         best = max(best, (least, z), key=lambda tried: tried[0])
         free = not own.learns and n < FREE
         if not own.learns and n == FREE and least < best[0]:
@@ -148,12 +148,7 @@ def independent(passed: Passed) -> float:
 
 
 def curves(own: Filter, data: Windows) -> Curves:
-    """Curves of all factors about the rig file.
-
-    Args:
-        own: the filter
-        data: windows
-    """
+    """Curves of all factors about the rig file, as some windows show them."""
     some = np.linspace(0, len(data.read) - 1, min(len(data.read), WINDOWS)).astype(int)
     factors = [j for j, knob in enumerate(own.knobs) if knob.scaled]
     z = np.zeros((len(factors), len(SEEN), len(some), len(own.knobs)))

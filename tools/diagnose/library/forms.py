@@ -141,13 +141,9 @@ class Regime:
             return {"backward" if self.above else "forward": 0.0}
         if self.quantity == "film":
             return {"film_on": theta["threshold"]}
-        width = USUAL * (ranges.high[self.quantity] - ranges.low[self.quantity])
-        q = self.quantity
-        return {
-            f"{q}_on": theta["threshold"],
-            f"{q}_side": 1.0 if self.above else -1.0,
-            f"{q}_width": width * theta["width"],
-        }
+        q, side = self.quantity, 1.0 if self.above else -1.0
+        width = USUAL * (ranges.high[q] - ranges.low[q]) * theta["width"]
+        return {f"{q}_on": theta["threshold"], f"{q}_side": side, f"{q}_width": width}
 
     @property
     def told(self) -> Mapping[str, str]:

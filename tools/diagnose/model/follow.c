@@ -22,7 +22,7 @@ typedef struct {
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
 } Logs;
 
-/* (n, k), (n, k, k); the others (n, L, shown); those that are not wanted are none. */
+/* (n, k), (n, k, k); the others (n, L, shown). */
 typedef struct { double *slope, *curvature, *error, *variance, *shown; } Told;
 
 #define LOG_GAMMA 0.29289321881345247560
@@ -208,7 +208,7 @@ static void log_correct(Follow *F, const Told *told, lanes corrects, lanes count
   const whole nx = F->nx, m = F->reads, k = D->k;
   lanes *by_z = F->by[0];
   log_update(F);
-  EACH if (told->variance && F->runs.on[l])
+  EACH if (F->runs.on[l])
     for (whole i = 0; i < m; i++)
       told->variance[(F->runs.run[l] * D->L + F->t) * m + i] = F->own[i][l];
   for (whole i = 0; i < nx * m; i++) F->gain[i] = lanes_only(corrects != 0, F->gain[i]);

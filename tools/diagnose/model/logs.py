@@ -116,16 +116,12 @@ class Filter:
         self.moments = False
         #: Steps of a sample.
         self.parts = 1
-        self.nx = len(plant.flat.states)
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
 
     def settings(self, z: np.ndarray) -> dict[str, np.ndarray]:
-        """What the knobs set.
-
-        Args:
-            z: of each window (N, k)
+        """What knobs z (N, k), those of each window, set.
 
         Returns:
             p, dp: parameters (N, np), their slopes (N, paths, k)
@@ -191,8 +187,7 @@ class Filter:
         """One pass.
 
         Args:
-            data: windows
-            z: knobs of each window (N, k)
+            data, z: windows, and the knobs of each (N, k)
             free: whether samples that count do not correct the states; no slopes then
             slopes: whether slope and curvature are wanted
             progress: called with the share done

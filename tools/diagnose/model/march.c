@@ -14,8 +14,7 @@ typedef struct { const whole *begin, *row; } Pattern;
 
 /* A rig: sizes, compiled formulas, patterns of their matrices. */
 typedef struct {
-  whole nx, nw, nu, np, knobs, given, shown, tried, most;
-  whole nc;
+  whole nx, nw, nu, np, knobs, given, shown, tried, most, nc;
   Formula constants, rates, slopes, readings, reading_slopes, trials;
   Pattern rates_w, rates_by, shown_w, shown_by, rates_tried, shown_tried;
   const double *scale, *guess, *thermal;
