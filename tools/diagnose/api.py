@@ -13,9 +13,10 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
+from ...model.errors import Problems
 from ...scenarios.frames import Table as File, Tables as Files, path_or_none, paths_of, rows_told
 from ...scenarios.given import RigLike, listed
-from ..show.console import PICTURES, as_json, file_of, progress_bar, write
+from ..show.console import as_json, file_of, plottable, progress_bar, write
 from ..show.display import Display
 from ..show.picture import Picture
 from .answer.findings import Findings
@@ -84,10 +85,7 @@ class Diagnosis(Display, Findings):
         return text(self, everything=everything, width=width)
 
     def report(self, path: str | Path) -> Path:
-        """Write the HTML page.
-
-        Args:
-            path: file to write
+        """Write the HTML page to a file.
 
         Raises:
             DataError: it cannot be written
@@ -97,9 +95,6 @@ class Diagnosis(Display, Findings):
 
     def write(self, outputs: Outputs) -> None:
         """Write files when all of them are made: an interrupted run leaves none.
-
-        Args:
-            outputs: the files
 
         Raises:
             DataError: one cannot be written
@@ -257,10 +252,8 @@ def plan(
     request = PlanRequest(
         rig, tuple(listed(separate)), path_or_none(card), path_or_none(points), paths_of(library), reference
     )
-    problems, picture = [], path_or_none(out)
-    if picture is not None and picture.suffix.lower() not in PICTURES:
-        kinds = " or ".join(PICTURES)
-        problems.append(f"--out {out}: unknown kind of picture. Its name must end in {kinds}.")
+    problems, picture = Problems(), path_or_none(out)
+    problems.of(lambda: plottable(picture, "--out"))
     if picture is not None and not separate:
         problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
     inputs = read_plan(request, {"--json": file_of(json), "--out": picture}, problems)

@@ -161,9 +161,7 @@ class PlanInputs:
     points: Campaign | None
 
 
-def read_plan(
-    request: PlanRequest, written: Mapping[str, Path | None] = {}, problems: Iterable[str] = ()
-) -> PlanInputs:
+def read_plan(request: PlanRequest, written: Mapping[str, Path | None], problems: Iterable[str]) -> PlanInputs:
     """Read and check all files of a plan but libraries, as `read` does."""
     reader = _Reader(request, written, problems)
     points = reader.table(request.points, points=True)
