@@ -55,12 +55,7 @@ class Levels:
 
 
 def first_levels(sd: np.ndarray, machines: int) -> Levels:
-    """Levels before any data.
-
-    Args:
-        sd: of the knobs between machines (k,)
-        machines: their number
-    """
+    """Levels before any data, by the standard deviations of the knobs between machines (k,) and their number."""
     machine = np.diag(sd**2)
     root, mean = 1.5**2 * machine, np.zeros((machines, len(sd)))
     C = np.tile(root + machine, (machines, 1, 1))

@@ -21,11 +21,7 @@ GROSS = 0.002
 
 
 class Prior:
-    """Of all hypotheses that hold some of these causes.
-
-    Args:
-        causes: all of the library
-    """
+    """Of all hypotheses that hold some of the causes of a library."""
 
     def __init__(self, causes: Iterable[Cause]) -> None:
         families: dict[str, list[Cause]] = {}

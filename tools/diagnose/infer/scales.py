@@ -74,11 +74,7 @@ def _bounded(x: np.ndarray, H: np.ndarray, gradient: np.ndarray) -> np.ndarray:
 
 
 class _Many:
-    """By the whole covariance; terms that are variances, most of them, by their diagonals.
-
-    Args:
-        base, loose, residual: as for `most_likely`
-    """
+    """By the whole covariance; most terms are variances, and stand by their diagonals. Arguments of `most_likely`."""
 
     def __init__(self, base: np.ndarray, loose: Sequence[Term], residual: np.ndarray) -> None:
         self.base, self.residual = base, residual
@@ -119,10 +115,8 @@ class _Many:
 class _Few:
     """By few columns of the loose terms beside the entries.
 
-    The covariance is base + U W U' with W > 0: all is said by G = U' base^-1 U and b = U' base^-1 r.
-
-    Args:
-        base, loose, residual: as for `most_likely`; the base may lack variances
+    The covariance is base + U W U' with W > 0: all is said by G = U' base^-1 U and b = U' base^-1 r. Arguments of
+    `most_likely`; the base may lack variances.
     """
 
     #: Part of the smallest variance that counts with the base.

@@ -31,12 +31,7 @@ EXPONENTS = {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
 
 
 class Extras:
-    """Makes the extra parts of one cause, and forms that use them.
-
-    Args:
-        kind: short name of the cause, in the names of its parts
-        at: what they are made for
-    """
+    """Makes the extra parts of one cause, by whose short name `kind` they are named, and forms that use them."""
 
     def __init__(self, kind: str, at: Context) -> None:
         self.kind, self.roles, self.ranges = kind, at.roles, at.ranges

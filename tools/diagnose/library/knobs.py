@@ -35,8 +35,7 @@ class Knob:
         sd: standard deviation between machines of one type; in the same way
         scaled: parameters multiplied by exp(exponent z): path -> exponent
         shifted: parameters to which z is added [SI]
-        sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
-        gain: see above
+        sensor, gain: a sensor that shows z too much; with `gain` exp(z) times what is there
     """
 
     name: str

@@ -48,11 +48,7 @@ def library(
 ) -> tuple[Cause, ...]:
     """All causes that the machine and its instruments allow, in the order of the taxonomy.
 
-    Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
-        extra_files: files of the user that define `causes(roles, ranges, sensors)`
+    Files of the user, `extra_files`, define `causes(roles, ranges, sensors)`.
 
     Raises:
         DataError: files and packages without causes, and causes that are none, all at once
