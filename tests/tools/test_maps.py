@@ -56,6 +56,20 @@ def test_a_rating_keeps_the_limit(gearheat, tmp_path):
     assert abs(there["output.P"]) / 1000 == pytest.approx(row["power [kW]"], rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        (("rating", "--limit", "nonsense=95 degC", "--limit", "oil.T=95 degC"), "Rate for one at a time"),
+        (("rating", "--limit", "oil.T=80 degC", "--grid", "1x1", "--grid", "2x2"), "--grid is given 2 times"),
+        (("map", "--speed", "100..200 rpm", "--speed", "200..300 rpm"), "--speed is given 2 times"),
+    ],
+)
+def test_an_option_with_one_value_is_refused_a_second_time(gearheat, command, told):
+    answer = gearheat(command[0], "helical_two_stage", *command[1:])
+    assert answer.code == 2
+    assert told in answer.err
+
+
 def test_what_cannot_be_mapped_or_rated_is_said(gearheat, tmp_path):
     answer = gearheat("map", "fzg_four_square", "-o", tmp_path / "map.csv")
     assert answer.code == 2

@@ -21,7 +21,10 @@ TEXTS: dict[str, dict[str, Any]] = tomllib.loads(
 
 
 class Command(TyperCommand):
-    """A command some of whose options may stand without a value: the first of those under `bare` in `options.toml`."""
+    """A command some of whose options may stand without a value: the first of those under `bare` in `options.toml`.
+
+    An option with one value is refused a second time: the first value would be dropped unseen.
+    """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read the arguments."""
@@ -30,6 +33,10 @@ class Command(TyperCommand):
             for k in [k for k, text in enumerate(args) if values and text in about["flags"]][::-1]:
                 if not any(text in values for text in args[k + 1 : k + 2]):
                     args.insert(k + 1, values[0])
+        options: Any = self.make_parser(ctx).parse_args(list(args))[2]
+        for option in options if not ctx.resilient_parsing else ():
+            if options.count(option) > 1 and not (option.multiple or option.is_flag):
+                ctx.fail(f"{option.opts[-1]} is given {options.count(option)} times. Give it once.")
         return super().parse_args(ctx, args)
 
 

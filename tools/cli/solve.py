@@ -140,7 +140,7 @@ def map_(
 
 def rating(
     rig: str,
-    limit: str,
+    limit: list[str],
     room: str | None = None,
     speed: str | None = None,
     grid: str = "5x5",
@@ -156,7 +156,7 @@ def rating(
     if out is not None:
         powers.save(out)
     if live is not None:
-        gh.page(rig, set=set_ or [], limit=limit.partition("=")[2]).save(live)
+        gh.page(rig, set=set_ or [], limit=powers.limit.partition("=")[2]).save(live)
     found = powers.as_dict() | {"out": out and str(out)}
     console.answer(found, json, lambda: _print_rating(powers))
 
