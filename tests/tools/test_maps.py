@@ -56,6 +56,37 @@ def test_a_rating_keeps_the_limit(gearheat, tmp_path):
     assert abs(there["output.P"]) / 1000 == pytest.approx(row["power [kW]"], rel=1e-4)
 
 
+def test_a_point_of_a_catalogue_is_rated_and_is_among_the_usual_ones(gearheat, tmp_path):
+    def powers(*options):
+        answer = gearheat("rating", "helical_two_stage", "--limit", "oil.T=80 degC", *options, "--json", "-")
+        return {(row["room.T [degC]"], round(row["input.w [rpm]"], 3)): row["power [kW]"] for row in answer.json["rows"]}
+
+    point = powers("--room", "20 degC", "--speed", "1450 rpm")
+    usual = powers("--room", "20 degC")
+    assert list(point) == [(20.0, 1450.0)]
+    assert usual[20.0, 1450.0] == pytest.approx(point[20.0, 1450.0], rel=1e-5)
+    assert len(usual) == 6
+    out = tmp_path / "map.csv"
+    gearheat("map", "helical_two_stage", "--speed", "1450 rpm", "--grid", "1x3", "-o", out)
+    assert [row["input.w [rpm]"] for row in rows_of(out)] == [1450.0] * 3
+
+
+@pytest.mark.parametrize(
+    ("option", "given", "told"),
+    [
+        ("--room", "900 degC", '--room room.T = "900 degC" is out of range'),
+        ("--room", "20", 'Write "20 degC"'),
+        ("--speed", "20 degC", "--speed input.w"),
+        ("--speed", "900..300 rpm", "--speed 900 rpm..300 rpm"),
+    ],
+)
+def test_what_is_wrong_with_a_range_names_its_option(gearheat, option, given, told):
+    answer = gearheat("rating", "helical_two_stage", "--limit", "oil.T=80 degC", option, given)
+    assert answer.code == 2
+    assert told in answer.err
+    assert "--vary" not in answer.err
+
+
 @pytest.mark.parametrize(
     ("command", "told"),
     [

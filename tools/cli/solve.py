@@ -143,7 +143,7 @@ def rating(
     limit: list[str],
     room: str | None = None,
     speed: str | None = None,
-    grid: str = "5x5",
+    grid: str = "5x6",
     out: Path | None = None,
     set_: list[str] | None = None,
     live: Path | None = None,

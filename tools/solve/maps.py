@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,10 @@ from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import design
 from ...model.units import SHOWN, from_si, show_unit, text
 from ...scenarios.csv_table import in_si
-from ...scenarios.given import RigLike, Settings, assignments_of, grid_text, listed, range_text, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, grid_text, listed, range_of, scenario_of, spell
 from ...scenarios.measured.nominal import Nominal
 from ...scenarios.scenario import Scenario, parse_assignments
+from ...scenarios.values import in_range
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from . import sampling
@@ -48,12 +49,33 @@ def usual_range(scenario: Scenario, path: str) -> str:
     """A range about the value of the operating point, as it is written on the command line."""
     value = scenario.operating_point[path]
     low, high = (from_si(share * value, "rad/s" if path.endswith(".w") else "N.m") for share in USUAL)
-    return f"{min(low, high):.4g}..{max(low, high):.4g} {'rpm' if path.endswith('.w') else 'N.m'}"
+    return f"{min(low, high):.6g}..{max(low, high):.6g} {'rpm' if path.endswith('.w') else 'N.m'}"
 
 
-def _range(scenario: Scenario, path: str, given: Any, option: str) -> str:
-    """A range as it is given, else the usual one."""
-    return usual_range(scenario, path) if given is None else range_text(given, scenario.settable()[path], option)
+def _vary(scenario: Scenario, path: str, given: Any, option: str) -> str:
+    """What a sweep varies: the range or the one value that an option gives, else the usual range.
+
+    Raises:
+        ScenarioError: it is neither; problems name the option
+    """
+    quantity = scenario.settable()[path]
+    if given is None:
+        return f"{path}={usual_range(scenario, path)}"
+    if ".." not in given if isinstance(given, str) else not isinstance(given, Iterable):
+        ends = [spell(given, quantity, option)]
+    else:
+        ends = [spell(end, quantity, option) for end in range_of(given, quantity, option)]
+    for end in ends:
+        in_range(f"{option} ", end, quantity)
+    return f"{path}={'..'.join(ends) if ends[1:] else f'{ends[0]},'}"  # the comma makes it a list of one
+
+
+def _grid(grid: str | Sequence[int], vary: Sequence[str]) -> str:
+    """The grid as a sweep has it: what has one value needs no number."""
+    counts = re.split(r"\s*[xX*]\s*", grid_text(grid).strip())
+    if len(counts) != len(vary):
+        return grid_text(grid)
+    return "x".join(n for n, text in zip(counts, vary, strict=True) if ".." in text)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -147,9 +169,9 @@ def map_outputs(
 
     Args:
         rig: name, file or rig
-        speed: range such as "300..1800 rpm" or ("300 rpm", "1800 rpm"); about the operating point if None
-        torque: range such as "-600..-60 N.m"; about the operating point if None
-        grid: points, speeds x torques, such as "21x21" or (21, 21)
+        speed: range such as "300..1800 rpm" or ("300 rpm", "1800 rpm"), or one value; about the operating point if None
+        torque: range such as "-600..-60 N.m", or one value; about the operating point if None
+        grid: points, speeds x torques, such as "21x21" or (21, 21); one value takes no number
         output: outputs to map; oil temperature, losses and efficiencies if none is named
         set: values by name: texts with units, quantities of pint, or numbers in SI
 
@@ -164,10 +186,10 @@ def map_outputs(
     scenario = scenario_of(rig)
     paths = driving(scenario)
     ranges = zip(paths, (speed, torque), ("--speed", "--torque"), strict=True)
-    vary = [f"{path}={_range(scenario, path, given, option)}" for path, given, option in ranges]
+    vary = [_vary(scenario, path, given, option) for path, given, option in ranges]
     shows = list(dict.fromkeys(listed(output))) or leading_outputs(scenario)
     assignments = assignments_of(set, scenario.settable)
-    plan = plan_sweep(Request(scenario, vary, None, grid=grid_text(grid), assignments=assignments, outputs=shows))
+    plan = plan_sweep(Request(scenario, vary, None, grid=_grid(grid, vary), assignments=assignments, outputs=shows))
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
     if np.isnan(rows[:, : len(shows)]).all():
@@ -249,7 +271,7 @@ def rating(
     *,
     room: Any = None,
     speed: Any = None,
-    grid: str | Sequence[int] = "5x5",
+    grid: str | Sequence[int] = "5x6",
     set: Settings = (),
 ) -> Rating:
     """Thermal power: the continuous power at which the oil just keeps a limit, over room temperature and speed.
@@ -257,9 +279,9 @@ def rating(
     Args:
         rig: name, file or rig
         limit: what is kept, such as "oil.T=95 degC", "oil.T<95 degC" or {"oil.T": "95 degC"}
-        room: range of the room temperature, such as "0..40 degC" or (273.15, 313.15), which it is if None
-        speed: range of the speed; about the operating point if None
-        grid: points, rooms x speeds
+        room: range of the room temperature, such as "0..40 degC" or (273.15, 313.15), which it is if None, or one value
+        speed: range of the speed, or one value; about the operating point if None
+        grid: points, rooms x speeds, the operating point's own speed among them by default; one value takes no number
         set: values by name: texts with units, quantities of pint, or numbers in SI
 
     Raises:
@@ -274,8 +296,10 @@ def rating(
     (driven, torque), place = driving(scenario), scenario.room
     if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
-    rooms = "0..40 degC" if room is None else range_text(room, scenario.settable()[place], "--room")
-    varied = sampling.read([f"{place}={rooms}", f"{driven}={_range(scenario, driven, speed, '--speed')}"])
+    vary = [
+        _vary(scenario, place, "0..40 degC" if room is None else room, "--room"),
+        _vary(scenario, driven, speed, "--speed"),
+    ]
     ways, both = {place: "--room", driven: "--speed"}, names_set(set)
     Problems(f"{n} is set, and varied. Give its range by {way}." for n, way in ways.items() if n in both).check()
     setting = adjust(scenario, set, named=[place, driven])
@@ -284,8 +308,8 @@ def rating(
     if len(limits) != 1:
         raise ScenarioError(f"--limit: {len(limits)} are given. Rate for one at a time, and take the lower power.")
     written, aim = limits[0], parse_assignments(flat, limits)
-    axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
-    values = sampling.lay_grid(axes, grid_text(grid))
+    axes = sampling.axes(sampling.read(vary), {name: flat.quantity(name) for name in (place, driven)})
+    values = sampling.lay_grid(axes, _grid(grid, vary))
     powers, torques = np.full(len(values), np.nan), np.full(len(values), np.nan)
     load = abs(scenario.operating_point[torque])
     side = -1.0 if scenario.operating_point[torque] < 0 else 1.0
