@@ -59,7 +59,9 @@ def test_a_rating_keeps_the_limit(gearheat, tmp_path):
 def test_a_point_of_a_catalogue_is_rated_and_is_among_the_usual_ones(gearheat, tmp_path):
     def powers(*options):
         answer = gearheat("rating", "helical_two_stage", "--limit", "oil.T=80 degC", *options, "--json", "-")
-        return {(row["room.T [degC]"], round(row["input.w [rpm]"], 3)): row["power [kW]"] for row in answer.json["rows"]}
+        return {
+            (row["room.T [degC]"], round(row["input.w [rpm]"], 3)): row["power [kW]"] for row in answer.json["rows"]
+        }
 
     point = powers("--room", "20 degC", "--speed", "1450 rpm")
     usual = powers("--room", "20 degC")

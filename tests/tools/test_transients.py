@@ -52,8 +52,14 @@ def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
     settings = ("--set", "cooling.A=0.7 m2")
     assert gearheat("export", "--platform", "host", "planetary", "-o", fmu, *settings).code == 0
     pages = tmp_path / "simulated.html", tmp_path / "played.html"
-    assert gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, "--plot", pages[0], *settings).code == 0
-    assert gearheat("play", fmu, "--duty", duty, "-o", played, "--plot", pages[1]).code == 0
+    said = [
+        gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, "--plot", pages[0], *settings),
+        gearheat("play", fmu, "--duty", duty, "-o", played, "--plot", pages[1]),
+    ]
+    assert [answer.code for answer in said] == [0, 0]
+    summaries = [answer.out.splitlines()[1] for answer in said]
+    assert summaries[0].startswith("over the duty: mean loss ") and " at the end " in summaries[0]
+    assert summaries[0] == summaries[1]
     for page in pages:
         text = page.read_text(encoding="utf-8")
         assert problems_of(text) == [] and '"oil.T"' in text
@@ -76,6 +82,18 @@ def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
     assert first[1] == pytest.approx(first[0])
     assert gearheat("play", fmu, "--duty", duty, "-o", out, "--set", "oil.T=50 degC").code == 0
     assert [columns(out)[name][0] for name in ("oil.T [degC]", "wall.T [degC]")] == pytest.approx([50.0, 35.0])
+
+
+def test_a_load_of_a_duty_that_is_far_above_the_usual_is_told(gearheat, tmp_path):
+    fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
+    duty.write_text("time [min],carrier.w [rpm],carrier.tau [N.m]\n0,100,1500\n5,100,15000\n10,100,1500\n")
+    assert gearheat("export", "--platform", "host", "planetary", "-o", fmu).code == 0
+    for command, where in (("simulate", "planetary"), "the rig file"), (("play", fmu), "the FMU"):
+        told = gearheat(*command, "--duty", duty, "-o", out).err
+        assert f"duty.csv, row 2: carrier.tau = 15000 N.m is 6 times that of {where}, 2500 N.m. Check" in told
+    duty.write_text("time [min],output.load [N.m]\n0,5900\n5,590\n")  # the rig file gives the torque of that end
+    told = gearheat("simulate", "helical_two_stage", "--duty", duty, "-o", out).err
+    assert "duty.csv, row 1: output.load = 5900 N.m is 10 times that of the rig file, -590 N.m." in told
 
 
 def test_parameters_and_states_of_an_fmu_can_be_set(gearheat, duty, tmp_path):

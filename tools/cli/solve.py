@@ -206,7 +206,13 @@ def print_end(out: Path, found: Mapping[str, Any], headlines: Sequence[str] = ()
         console.say(line)
     if found.get("backward"):
         console.note(f"{found['backward']} of {found['rows']} rows: {BACKWARD}")
+    _print_far(found)
     print_outside(found.get("outside", ()))
+
+
+def _print_far(found: Mapping[str, Any]) -> None:
+    for line in found.get("far", ()):
+        console.note(f"{line}. Check its digits and its unit.")
 
 
 def _print_point(
@@ -218,8 +224,7 @@ def _print_point(
     console.say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     if found.get("backward"):
         console.note(BACKWARD)
-    for line in found.get("far", ()):
-        console.note(f"{line}. Check its digits and its unit.")
+    _print_far(found)
     print_outside(found["outside"])
 
 

@@ -16,7 +16,7 @@ from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, li
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
-from ..solve.simulate import Duty, TimeSeries, duty_file
+from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, over_the_duty
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 
@@ -158,7 +158,18 @@ def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), t
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     before = {"schema": "gearheat.play/1", "fmu": str(fmu), "out": None, "plot": None}
-    return TimeSeries(f"{fmu.stem}, {path.stem}", played.time, columns, units, (before, {}))
+    made_here = _of_gearheat(about)
+    usual = {name: float(about.variables[name].start or 0.0) for name in inputs if made_here}
+    behind = {"far": far_in(path.name, schedule, usual, "the FMU")}
+    shown = about.quantities("output")
+    warm = {name: columns[name] for name, q in shown.items() if q.unit == "K"}
+    lost = [columns[n] for n in shown if n.endswith(".P_loss") and f"{n.removesuffix('P_loss')}eta" in shown]
+    said = over_the_duty(played.time, warm, lost[0] if lost else None) if made_here else []
+    return TimeSeries(f"{fmu.stem}, {path.stem}", played.time, columns, units, (before, behind), said)
+
+
+def _of_gearheat(about: Described) -> bool:
+    return (about.description.generationTool or "").startswith("gearheat")
 
 
 def _at_room(about: Described, first: Mapping[str, float]) -> dict[str, float]:
@@ -168,7 +179,7 @@ def _at_room(about: Described, first: Mapping[str, float]) -> dict[str, float]:
         about: description of the FMU
         first: what the run sets, and the first value of what it gives
     """
-    if not (about.description.generationTool or "").startswith("gearheat"):
+    if not _of_gearheat(about):
         return {}
     warm = [v for v in about.variables.values() if v.unit == "K" and v.start and settable(v)]
     rooms = {float(v.start): first[v.name] for v in warm if v.causality == "input" and v.name in first}
@@ -180,7 +191,7 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
     """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
     known, shown, wholes = about.quantities("start"), about.quantities("output"), about.wholes()
     values: dict[str, float] = {}
-    ours = (about.description.generationTool or "").startswith("gearheat")
+    ours = _of_gearheat(about)
     problems = Problems()
     for text in assignments:
         name, _, written = (part.strip() for part in text.partition("="))

@@ -267,7 +267,7 @@ class Rating(Columns):
 
 def rating(
     rig: RigLike,
-    limit: str | Mapping[str, Any],
+    limit: str | Sequence[str] | Mapping[str, Any],
     *,
     room: Any = None,
     speed: Any = None,

@@ -19,7 +19,7 @@ from ...model.run.point import Point
 from ...model.run.schedule import Schedule
 from ...model.run.simulate import OUTPUT_STEP, Through, simulate as integrate
 from ...model.run.steady import steady
-from ...model.units import SHOWN, from_si, in_unit, show_unit
+from ...model.units import SHOWN, from_si, in_unit, show_unit, text
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.frames import Table, path_of, rows_told
 from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, scenario_of
@@ -29,7 +29,7 @@ from ..show.console import note
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from .settings import adjust, find_unchecked, flat_of, refuse_given
-from .steady import SteadyState, outside_of
+from .steady import SteadyState, far_from, kilowatts, loss_names, outside_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -223,10 +223,13 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None)
     through = compiled(flat, schedule) if len(schedule.time) > LONG else None
     begin, step = first_states(scenario, flat, schedule, how), output_step(schedule, every)
     result = integrate(flat, schedule, start=begin, through=through, every=step)
+    warm, lost = {name: result[name] for name in flat.bodies}, loss_names(scenario, result.columns).values()
+    whole = sum((result[name] for own in lost for name in own), np.zeros(len(result.index)))
     before = {"schema": "gearheat.simulate/1", "rig": scenario.name, "out": None, "plot": None}
     into = result.columns.get(f"{scenario.drives}.P", np.zeros(0))
     behind = {
         "backward": int((into < 0).sum()),
+        "far": far_in(path.name, schedule, usual.operating_point),
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
@@ -235,8 +238,44 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None)
     name = f"{scenario.name}, {path.stem}"
     last = replace(result, columns={key: column[-1:] for key, column in result.columns.items()})
     end = SteadyState(scenario, flat, last, backward=False)
-    said = [*(["at the end: " + ", ".join(end.flows)] if end.flows else []), *end.headlines]
+    said = [
+        *over_the_duty(result.index, warm, whole),
+        *(["at the end: " + ", ".join(end.flows)] if end.flows else []),
+        *end.headlines,
+    ]
     return TimeSeries(name, result.index, result.columns, result.units, (before, behind), said)
+
+
+def far_in(name: str, schedule: Schedule, usual: Mapping[str, float], where: str = "the rig file") -> list[str]:
+    """Speeds and torques of a duty that are far above the usual ones, in words: of each the largest.
+
+    Args:
+        name: of the duty
+        schedule: its values
+        usual: what they are compared with (SI)
+        where: that is from
+    """
+    rows = {path: int(np.abs(values).argmax()) for path, values in schedule.values.items()}
+    units = {path: "rad/s" if path.endswith(".w") else "N.m" for path in rows if path.endswith((".w", ".tau", ".load"))}
+    found = far_from(usual, {path: float(schedule.values[path][rows[path]]) for path in units}, units, where)
+    return [f"{name}, row {rows[path] + 1}: {words}" for path, words in found.items()]
+
+
+def over_the_duty(time: np.ndarray, warm: Mapping[str, np.ndarray], loss: np.ndarray | None) -> list[str]:
+    """Mean loss, and the hottest body, in words: the end of a duty may be one at rest.
+
+    Args:
+        time: of the rows [s]
+        warm: name -> temperature [K]
+        loss: power [W]
+    """
+    said = [] if loss is None else [f"mean loss {kilowatts(float(np.trapezoid(loss, time) / np.ptp(time)))}"]
+    if warm:
+        hottest = max(warm, key=lambda name: warm[name].max())
+        T, body = warm[hottest], hottest.removesuffix(".T")
+        when = f"after {(time[T.argmax()] - time[0]) / 60:.4g} min"
+        said.append(f"hottest {body} {text(float(T.max()), 'K', 3)} {when}, at the end {text(float(T[-1]), 'K', 3)}")
+    return [f"over the duty: {', '.join(said)}"] if said else []
 
 
 def output_step(schedule: Schedule, every: Any) -> float:

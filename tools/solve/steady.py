@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -80,7 +80,7 @@ class SteadyState(Quantities):
     @property
     def flows(self) -> list[str]:
         """Which way power flows at each shaft end."""
-        return [f"{_kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
+        return [f"{kilowatts(P)} {'in' if P > 0 else 'out'} at {end}" for end, P in self.power().items()]
 
     @property
     def title(self) -> str:
@@ -99,14 +99,14 @@ class SteadyState(Quantities):
     def headlines(self) -> list[str]:
         """Efficiency, losses by kind, the hottest body, and how far the oil is below the end of thermal ratings."""
         by_kind, meters = self.losses_by_kind(), self.scenario.spec.of_type("Efficiency")
-        losses = ", ".join(f"{PLURAL.get(kind, kind)} {_kilowatts(P)}" for kind, P in by_kind.items())
+        losses = ", ".join(f"{PLURAL.get(kind, kind)} {kilowatts(P)}" for kind, P in by_kind.items())
         whole, eta = sum(by_kind.values()), ""
         if meters and max(self.power().values(), default=0.0) > 0.0:  # at rest there is none
             between = self[f"{meters[0]}.P_loss"]
             apart = abs(between - whole) > APART * whole
             eta = f"efficiency {100 * self[f'{meters[0]}.eta']:.2f} %, "
-            eta += f"{_kilowatts(between)} between the shafts, in all " if apart else ""
-        lines = [f"{eta}loss {_kilowatts(whole)}: {losses}"] if by_kind else []
+            eta += f"{kilowatts(between)} between the shafts, in all " if apart else ""
+        lines = [f"{eta}loss {kilowatts(whole)}: {losses}"] if by_kind else []
         warm = {name.removesuffix(".T"): self[name] for name in self.flat.bodies}
         if warm:
             hottest = max(warm, key=lambda body: warm[body])
@@ -194,7 +194,8 @@ def baths(scenario: Scenario) -> list[str]:
     return [name for name, kind in scenario.types.items() if kind.role == "bath" and "T" in list_declared(kind, State)]
 
 
-def _kilowatts(P: float) -> str:
+def kilowatts(P: float) -> str:
+    """The size of a power [W] in words."""
     return f"{abs(P) / 1000:.4g} kW" if abs(P) >= 1000 else f"{abs(P):.4g} W"
 
 
@@ -230,13 +231,29 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
     else:
         backward = len(given) == 2 and bool(np.prod(np.sign([*before.values(), *now.values()])) < 0)
     units = {path: flat.quantity(path).unit for path in given}
-    far = [
-        f"{path} = {text(now[path], units[path])} is {now[path] / before[path]:.3g} times that of the rig file,"
-        f" {text(before[path], units[path])}"
-        for path in given
-        if before[path] and abs(now[path] / before[path]) > FAR
-    ]
-    return SteadyState(scenario, flat, found, backward, tuple(far))
+    far = far_from(usual.operating_point, now, units)
+    return SteadyState(scenario, flat, found, backward, tuple(far.values()))
+
+
+def far_from(
+    usual: Mapping[str, float], now: Mapping[str, float], units: Mapping[str, str], where: str = "the rig file"
+) -> dict[str, str]:
+    """Path -> in words, of speeds, torques and loads that are far above the usual ones.
+
+    Args:
+        usual: what they are compared with (SI); a load with the torque of its end, a torque with the load
+        now: what they are (SI)
+        units: of them
+        where: the usual ones are from
+    """
+    found = {}
+    for path, value in now.items():
+        end, _, key = path.rpartition(".")
+        base = usual.get(path) or usual.get(f"{end}.{'load' if key == 'tau' else 'tau'}", 0.0) * (key != "w")
+        if base and units[path] in ("rad/s", "N.m") and (times := abs(value / base)) > FAR:
+            shown = text(value, units[path]), text(base, units[path])
+            found[path] = f"{path} = {shown[0]} is {times:.3g} times that of {where}, {shown[1]}"
+    return found
 
 
 def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list[str]:
