@@ -129,6 +129,10 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         name = TIME.name
     if name not in known:
         close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
+        end, _, key = name.rpartition(".")
+        other = f"{end}.{'load' if key == 'tau' else 'tau'}"
+        if key in ("tau", "load") and other in known:  # an FMU takes either, as it is exported
+            close = f' It takes {other}. An FMU that takes {name} is exported with --set "{name}=... N.m".'
         raise DataError(f'there is no input "{name}".{close}')
     quantity = known[name]
     remedy = f'Write it in brackets: "{name} [{show_unit(quantity.unit)}]".'

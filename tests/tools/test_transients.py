@@ -84,6 +84,20 @@ def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
     assert [columns(out)[name][0] for name in ("oil.T [degC]", "wall.T [degC]")] == pytest.approx([50.0, 35.0])
 
 
+def test_an_fmu_takes_a_torque_with_its_sign_where_it_is_exported_so(gearheat, tmp_path):
+    fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
+    duty.write_text("time [min],input.w [rpm],output.tau [N.m]\n0,1450,-590\n5,1450,-590\n5,-1450,-590\n9,-1450,-590\n")
+    export = ("export", "--platform", "host", "helical_two_stage", "-o", fmu, "--set")
+    assert gearheat(*export, "output.load=590 N.m").code == 0
+    refused = gearheat("play", fmu, "--duty", duty, "-o", out)
+    assert refused.code == 2
+    assert 'exported with --set "output.tau=... N.m"' in refused.err
+    assert gearheat(*export, "output.tau=-590 N.m").code == 0
+    assert gearheat("play", fmu, "--duty", duty, "-o", out).code == 0
+    power = columns(out)["output.P [W]"]
+    assert power[0] < 0 < power[-1]  # it lifts, and lowers
+
+
 def test_a_load_of_a_duty_that_is_far_above_the_usual_is_told(gearheat, tmp_path):
     fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
     duty.write_text("time [min],carrier.w [rpm],carrier.tau [N.m]\n0,100,1500\n5,100,15000\n10,100,1500\n")
