@@ -149,7 +149,7 @@ def test_what_is_set_stays_set(gearheat, tmp_path, elsewhere):
         "--set",
         "oil.T=50 degC",
     )
-    assert gearheat("export", "--platform", "host", "planetary", "-o", path, *options).code == 0
+    assert gearheat("export", "planetary", "-o", path, *options).code == 0
     start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(start["sun.tau"]) == -500.0
     assert float(start["rotor.w"]) == 10.0
@@ -335,7 +335,7 @@ def test_the_same_rig_gives_the_same_bytes_with_and_without_extras(exported, gea
 def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_path, elsewhere):
     path = tmp_path / "rig.fmu"
     more = ("--platform", elsewhere, "--extras", tmp_path / "more")
-    found = gearheat("export", "--platform", "host", "planetary", "-o", path, *more, "--json", "-").json
+    found = gearheat("export", "planetary", "-o", path, *more, "--json", "-").json
     assert found["platforms"] == [elsewhere]
     assert (tmp_path / "more" / "rig_ref.csv").is_file()
     with zipfile.ZipFile(path) as file:
@@ -396,7 +396,7 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     ],
 )
 def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, options, told):
-    answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", *options)
+    answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", *options)
     assert answer.code == 2
     assert told in answer.err
     assert list(tmp_path.iterdir()) == []
