@@ -122,7 +122,7 @@ def test_endings_say_what_is_written(gearheat, tmp_path: Path) -> None:
     assert "Say with --ssp which parts are one, or write a .fmu." in answer.err
     answer = gearheat("export", "planetary", "-o", tmp_path / "p.fmu", "--ssp", "cooling")
     assert answer.code == 2
-    assert "Its name must end in .ssp." in answer.err
+    assert "Name it *.ssp." in answer.err
     answer = gearheat("export", "planetary", "-o", tmp_path / "p.fmu", "--extras", tmp_path / "p.fmu")
     assert answer.code == 2
     assert "is the FMU itself. Give the folder another name." in answer.err

@@ -106,9 +106,9 @@ class Exported(Answer):
 def export_rig(asked: Asked) -> Exported:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     _refuse_together(asked)
-    fitting(asked.out, "an FMU")
     writable(asked.out)
     lasting(asked.out)
+    fitting(asked.out, "an FMU")
     chosen = platforms(asked.platform, asked.fmi)
     scenario, setting, whole, start = asked.prepared()
     hidden = constants_of(whole, asked.constants)

@@ -36,11 +36,9 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
         groups: parts of each FMU, "NAME=PART,PART"
         asked: the options of an export
     """
-    fitting(asked.out, "an FMU")
     writable(asked.out)
     lasting(asked.out)
-    if asked.out.suffix.lower() == ".fmu":
-        raise ScenarioError(f"-o {asked.out}: --ssp writes a system of FMUs. Its name must end in .ssp.")
+    fitting(asked.out, "a system of FMUs")
     given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
     given_up |= {"--constant": bool(asked.constants), "--real-time": asked.real_time is not None}
     if refused := [option for option, is_asked in given_up.items() if is_asked]:

@@ -9,7 +9,8 @@ from ...model.errors import DataError
 #: Endings of names of files by what is written.
 ENDINGS = {
     "a table": (".csv", ".txt", ".dat", ""),
-    "an FMU": (".fmu", ".ssp", ".zip", ""),
+    "an FMU": (".fmu", ".ssp", ".zip"),  # importers go by the ending
+    "a system of FMUs": (".ssp", ".zip"),
     "a page": (".html", ".htm", ""),
     "a schema": (".json", ""),
     "JSON": (".json", ""),
@@ -40,7 +41,7 @@ KNOWN = frozenset(
 
 
 def fitting(path: Path | None, kind: str, option: str = "-o") -> None:
-    """Refuse a name that says another kind of file than is written.
+    """Refuse a name that says another kind of file than is written, or none where one has to be said.
 
     Args:
         path: where it goes
@@ -50,6 +51,8 @@ def fitting(path: Path | None, kind: str, option: str = "-o") -> None:
     Raises:
         DataError: its ending is that of something else
     """
-    if path is not None and (ending := path.suffix.lower()) in KNOWN and ending not in ENDINGS[kind]:
-        what = f"{kind} is written, and {ending} is something else. Name it *{ENDINGS[kind][0]}."
-        raise DataError(f"{option} {path}: {what}")
+    if path is None or (ending := path.suffix.lower()) in ENDINGS[kind]:
+        return
+    if ending in KNOWN or "" not in ENDINGS[kind]:
+        other = f", and {ending} is something else" if ending else ""
+        raise DataError(f"{option} {path}: {kind} is written{other}. Name it *{ENDINGS[kind][0]}.")
