@@ -212,6 +212,12 @@ def test_design_meets_its_target_and_steady_confirms_it(gearheat):
     assert found["sensitivity"]["cooling.A"]["oil.T"] == pytest.approx(slope, rel=1e-2)
 
 
+def test_names_to_free_are_given_one_by_one(gearheat):
+    answer = gearheat("design", "planetary", "--free", "cooling.A,foot.G", "--target", "oil.T=70 degC")
+    assert answer.code == 2
+    assert answer.problems() == ["--free cooling.A,foot.G: is more than one name. Repeat --free for each.\n"]
+
+
 def test_design_frees_a_torque_as_an_input(gearheat):
     found = gearheat("design", "planetary", "--json", "-", "--free", "carrier.tau", "--target", "oil.T=60 degC").json
     assert 0 < found["free"]["carrier.tau"] < 2500

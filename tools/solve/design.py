@@ -170,10 +170,11 @@ def _alternatives(scenario: Scenario, among: str | None) -> tuple[str | None, li
 
 def _case(scenario: Scenario, freed: Sequence[Any], targets: Sequence[str], assignments: Sequence[str]) -> _Case:
     """One design, with the problems of everything given at once."""
-    problems = Problems()
     split = [one.partition("=")[::2] if isinstance(one, str) else one for one in freed]
     ranges = {name.strip(): given for name, given in split}
     free, bounds = [name.strip() for name, _ in split], dict[str, tuple[float, float]]()
+    several = [name for name in free if "," in name]
+    problems = Problems(f"--free {name}: is more than one name. Repeat --free for each." for name in several)
     setting = scenario
     with problems:
         setting = adjust(scenario, assignments, named=free)
@@ -187,7 +188,7 @@ def _case(scenario: Scenario, freed: Sequence[Any], targets: Sequence[str], assi
     problems += [
         f"--target: {name} is to be two things at once. Give it one value, or a range." for name in sorted(twice)
     ]
-    for name in free:
+    for name in (name for name in free if name not in several):
         with problems:
             flat.locate(name)
             if ranges[name] not in ("", None):
