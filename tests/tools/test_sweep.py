@@ -278,6 +278,19 @@ def test_rows_of_another_sweep_are_not_taken(gearheat, tmp_path, monkeypatch) ->
     assert out.read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
+def test_a_table_of_another_kind_is_not_replaced(gearheat, tmp_path) -> None:
+    out, rest = tmp_path / "duty.csv", ("--grid", "2", *KEPT)
+    out.write_text(duty := "time [min],carrier.w [rpm]\n0,100\n60,100\n")
+    answer = gearheat("sweep", "planetary", "--vary", "room.T=10..35 degC", *rest, "-o", out)
+    assert answer.code == 2
+    assert "with other columns than this sweep. Move it away" in answer.err
+    assert [path.read_text() for path in tmp_path.iterdir()] == [duty]
+    out.write_text("")
+    for high in (30, 35):  # an empty file holds nothing, and a sweep of the same columns may be run anew
+        assert gearheat("sweep", "planetary", "--vary", f"room.T=10..{high} degC", *rest, "-o", out).code == 0
+    assert column(table(out), "room.T [degC]") == pytest.approx([10.0, 35.0])
+
+
 def test_a_work_file_keeps_whole_blocks(tmp_path) -> None:
     path = tmp_path / "x.part"
     blocks = [np.arange(6.0).reshape(3, 2), np.array([[np.nan, -0.0]])]

@@ -37,7 +37,7 @@ from . import sampling
 from .cluster import run_on_cluster
 from .simulate import Duty, duty_file
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, Column, Store, local, work_file, write_table
+from .sweep_rows import TELLING, Block, Column, Store, local, refuse_other, work_file, write_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -230,6 +230,8 @@ def _run(request: Request, folder: Path) -> Sweep:
     plan = plan_sweep(request)
     out, blocks = request.out, plan.blocks
     lasting = out is not None and not flows(out)
+    if out is not None and lasting:
+        refuse_other(out, plan.columns)
     place = work_file(out if out is not None and lasting else folder / "rows.csv")
     with Store(place, plan.key, len(plan.job.outputs) + len(TELLING)) as store:
         left = [k for k in range(len(blocks)) if k not in store.places]

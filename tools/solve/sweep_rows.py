@@ -167,6 +167,29 @@ class Column:
 WORDS = tuple({int(s): s.name.lower() for s in Status}.get(k, "") for k in range(max(map(int, Status)) + 1))
 
 
+def refuse_other(out: Path, columns: Sequence[Column]) -> None:
+    """Refuse to replace a CSV file that is no table of this kind: it may be a duty, or written by hand.
+
+    Args:
+        out: where the table goes
+        columns: of the table
+
+    Raises:
+        DataError: another file is there
+    """
+    if out.suffix == ".csv" and out.is_file():
+        with out.open(encoding="utf-8", errors="replace") as file:
+            header = file.readline().rstrip("\n")
+        if header and header != _header(columns):
+            raise DataError(
+                f"{out}: is there, with other columns than this sweep. Move it away, or choose another place with -o."
+            )
+
+
+def _header(columns: Sequence[Column]) -> str:
+    return ",".join(cell_text(c.title) for c in columns)
+
+
 def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
     """Write the table block by block beside its place, and move it there.
 
@@ -188,7 +211,7 @@ def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[
 def _write_csv(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
     formats = ["%s" if c.words else "%d" if c.unit is None else "%.9g" for c in columns]
     with path.open("w", encoding="utf-8", newline="\n") as file:
-        file.write(",".join(cell_text(c.title) for c in columns) + "\n")
+        file.write(_header(columns) + "\n")
         line = ",".join(formats) + "\n"
         for block in blocks:
             cells = [c.cells(numbers) for c, numbers in zip(columns, block, strict=True)]
