@@ -212,6 +212,14 @@ def test_design_meets_its_target_and_steady_confirms_it(gearheat):
     assert found["sensitivity"]["cooling.A"]["oil.T"] == pytest.approx(slope, rel=1e-2)
 
 
+@pytest.mark.parametrize(("speed", "told"), [("50 Hz", True), ("60.0Hz", True), ("24 Hz", False), ("3000 rpm", False)])
+def test_hertz_of_a_plate_may_be_those_of_the_mains(gearheat, tmp_path, speed, told):
+    plate = ("--stages", "helical", "--ratio", 4, "--power", "5 kW", "--speed", speed)
+    answer = gearheat("new", "a", *plate, "-o", tmp_path / "a.toml")
+    assert answer.code == 0
+    assert ("are those of the mains" in answer.err) == told
+
+
 def test_names_to_free_are_given_one_by_one(gearheat):
     answer = gearheat("design", "planetary", "--free", "cooling.A,foot.G", "--target", "oil.T=70 degC")
     assert answer.code == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import groupby
@@ -35,6 +36,11 @@ def new(
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
+    if mains := re.fullmatch(r"\s*([56]0)(\.0*)?\s*Hz\s*", speed):
+        rpm = 60 * int(mains[1])
+        console.note(
+            f"--speed {speed} is read as {rpm} rpm. On a motor's plate Hz are those of the mains: give its rpm."
+        )
     path = out or Path(f"{name}.toml")
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
