@@ -102,7 +102,7 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     plate = ("--stages", "worm", "--ratio", 60, "--power", "3 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "hot", *plate, "-o", tmp_path / "hot.toml")
     assert answer.code == 0, answer.err
-    assert "needs --fan or --cooler (for 1.3 kW), fins, or a larger housing" in answer.err
+    assert "needs --fan or --cooler (for 1.2 kW), fins, or a larger housing" in answer.err
     assert "the largest loss is that of teeth" in answer.err and "for worms PAG" in answer.err
     plate = ("--stages", "helical,helical", "--ratio", 20, "--power", "600 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "weak", *plate, "--bearings", "ball", "-o", tmp_path / "weak.toml")
@@ -149,6 +149,32 @@ def test_a_centre_distance_that_the_load_does_not_suit_is_told(gearheat, tmp_pat
     assert "K* is 53.6 N/mm2, usual 1 to 6: the load asks for 224 mm" in answer.err
     assert "(u + 1)/u of 53.6 N/mm2 by a = 100 mm of a data sheet" in path.read_text("utf-8")
     assert "K*" not in gearheat("new", "b", *plate, "--centre-distance", "250 mm", "-o", tmp_path / "b.toml").err
+
+
+@pytest.mark.parametrize(
+    ("stages", "ratio", "power", "speed", "cooler", "solved"),
+    [
+        ("worm", 40, 750, 1400, False, True),
+        ("worm", 50, 100, 1450, True, True),
+        ("planetary,planetary", 100, 126, 3000, False, True),
+        ("planetary,bevel", 0.05, 50, 70, False, True),
+        ("helical,helical", 12.56, 7500, 1450, False, False),
+    ],
+)
+def test_at_the_name_plate_it_takes_the_power_of_the_name_plate(tmp_path, stages, ratio, power, speed, cooler, solved):
+    """Where the rule's efficiency is off by more than 2 %, the load follows from the one that is solved."""
+    plate = {"power": f"{power} W", "speed": f"{speed} rpm", "cooler": cooler}
+    sizes = new("a", stages=stages, ratio=ratio, **plate, out=(path := tmp_path / "a.toml")).sizes
+    assert sizes["power_W"] == pytest.approx(power, rel=0.012)
+    stated = re.search(r"name plate, (\S+) % efficiency( as solved)?,", path.read_text("utf-8"))
+    assert float(stated[1]) == pytest.approx(100 * sizes["efficiency"], rel=0.012) and bool(stated[2]) == solved
+
+
+def test_a_unit_that_loses_more_without_load_than_its_power_is_told():
+    notes = new("a", stages="bevel", ratio=3.0, power="1 W", speed="1450 rpm").notes
+    assert any(
+        re.search(r"it takes 4\.\d+ W, not the 1 W of the name plate: without load it loses 4", n) for n in notes
+    )
 
 
 def test_it_is_what_one_would_draw(made):

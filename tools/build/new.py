@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,14 +24,14 @@ from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions, outside_of
 from .allowed import check
 from .data_sheet import Wanted, wanted_of
-from .plausible import WARM, no_load, notes, usual
-from .rig_file import Around, around_of, lost, text
+from .plausible import PLATE, WARM, no_load, notes, usual
+from .rig_file import Around, Losses, around_of, lost, text
 from .sizing import Unit, unit
 
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
-#: Times that a rig with a cooler is solved, each for the cooler of the loss before.
-COOLERS = 3
+#: Times that a rig is solved, each for the cooler and the load of the losses before.
+PASSES = 3
 #: Least share of the loss of a part, of which it is told that its laws are outside their range [1].
 MATTERS = 0.1
 #: What name plates call an oil beside its class (DIN 51502, makers) -> its base, None for a word that tells none.
@@ -138,23 +138,26 @@ def new(
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
 
 
-def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str]) -> NewRig:
+def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[Losses], str]) -> NewRig:
     """The rig that is written to a file, and what it does at its name plate.
 
     Args:
         path: of the file
         made: the unit
         around: what stands around it
-        drawn: gives the text of the file for the loss that a cooler takes [W]
+        drawn: gives the text of the file for what is lost at the name plate
     """
-    loss = lost(made)
-    for _ in range(COOLERS if around.cooler else 1):
-        write(path, drawn(loss))
+    losses = lost(made)
+    for _ in range(PASSES):
+        write(path, drawn(losses))
         scenario = read_rig(path)
         flat = flat_of(scenario)
         point = conditions(scenario, flat)
         rest = SteadyState(scenario, flat, result := steady(flat, point), backward=False)
-        loss = rest["efficiency.P_loss"]
+        loss, off = rest["efficiency.P_loss"], abs(rest["input.P"] / made.power - 1)
+        if off <= PLATE and not around.cooler:
+            break
+        losses = replace(losses, P=loss) if off <= PLATE else Losses(rest["efficiency.eta"], loss, True)
     idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
     kinds = [s.kind for s in made.stages]
     foot = rest["foot.Q_flow"] if around.base != "free" else 0.0
@@ -169,6 +172,7 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[float], str
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
         "oil_degC": rest["oil.T"] - 273.15,
+        "power_W": rest["input.P"],
         "loss_W": loss,
         "no_load_W": float(idle[0]),
         "losses_W": rest.losses_by_kind(),

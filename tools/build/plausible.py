@@ -32,6 +32,8 @@ N_D = 1e6
 LIPS = (15.0, 35.0)
 #: How far the ratio may be from that of the name plate untold [1].
 OFF = 0.003
+#: How far the power that a unit takes may be from that of its name plate [1].
+PLATE = 0.02
 #: Usual loads of a stage [Pa].
 LOADED = {"worm": ("the wheel's torque over a3", 0.2e6, 1.3e6), "gears": ("K*", 1.0e6, 6.0e6)}
 #: Efficiency below which standard sizes do not fit the power.
@@ -103,6 +105,11 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
+    if abs(sizes["power_W"] / made.power - 1) > PLATE:
+        yield (
+            f"it takes {sizes['power_W']:.3g} W, not the {made.power:.3g} W of the name plate: without load it loses"
+            f" {sizes['no_load_W']:.3g} W."
+        )
     if hot or eta < low:
         kind, loss = next(iter(sizes["losses_W"].items()))
         share = loss / sum(sizes["losses_W"].values())

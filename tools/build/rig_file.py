@@ -109,13 +109,28 @@ def around_of(base: str, fan: bool, cooler: bool, heat: str | None, air: str | N
     return Around(base, fan, cooler, motor, speed, boxed)
 
 
-def lost(made: Unit) -> float:
-    """What a unit loses at the name plate by the efficiencies of its stages [W]."""
-    first = made.stages[0]
-    return (1 - math.prod(s.efficiency for s in made.stages)) * first.T * 2 * math.pi * first.n
+@dataclass(frozen=True)
+class Losses:
+    """What a unit loses at the name plate.
+
+    Args:
+        eta: efficiency, by which the load follows [1]
+        P: loss, which a cooler takes [W]
+        solved: whether the efficiency is that of the rig, not that of its stages by a rule
+    """
+
+    eta: float
+    P: float
+    solved: bool = False
 
 
-def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float) -> str:
+def lost(made: Unit) -> Losses:
+    """What a unit loses by the efficiencies of its stages."""
+    eta = math.prod(s.efficiency for s in made.stages)
+    return Losses(eta, (1 - eta) * made.power)
+
+
+def text(made: Unit, doc: str, speed: str, oil: str, around: Around, losses: Losses) -> str:
     """The rig file of a unit.
 
     Args:
@@ -124,9 +139,9 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float
         speed: of the input, as it is written
         oil: entry of the catalogue
         around: what stands around it and cools it
-        loss: at the name plate, which a cooler takes [W]
+        losses: at the name plate
     """
-    n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
+    n = len(made.stages)
     worm = isinstance(made.stages[0], WormStage)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
     names = names[:: -1 if made.increases else 1]
@@ -134,8 +149,8 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float
         "doc": doc,
         "speed": speed,
         "slow": names[-1],
-        "efficiency": efficiency,
-        "load": made.stages[0].T * max(made.ratio, 1.0) * efficiency,
+        "losses": losses,
+        "load": made.stages[0].T * max(made.ratio, 1.0) * losses.eta,
         "oil": oil,
         "bath": sizing.bath(made),
         "splash": sizing.splash(made) | {"r": f"stage_{made.numbers[0]}.r_1" if worm else _reach(made, 0)},
@@ -154,7 +169,7 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, loss: float
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d_seal} for k in (0, -1)],
         "fan": _fan(made) if around.fan else None,
         "cooled": COOLED,
-        "cooler": loss / COOLED if around.cooler else None,
+        "cooler": losses.P / COOLED if around.cooler else None,
         "foot": _foot(made, around.base),
         "motor": around.motor,
         "air": around.air,

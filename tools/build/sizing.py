@@ -77,6 +77,11 @@ class Unit:
         return math.prod(s.u for s in self.stages) ** (-1 if self.increases else 1)
 
     @property
+    def power(self) -> float:
+        """At the input [W]."""
+        return self.stages[0].T * 2 * math.pi * self.stages[0].n
+
+    @property
     def numbers(self) -> list[int]:
         """Of the stages as they are here, from the fast shaft on, counted from the input."""
         return list(range(1, len(self.stages) + 1))[:: -1 if self.increases else 1]
