@@ -329,6 +329,14 @@ def test_planets_lose_less_than_a_blade_in_oil_would():
         assert stage.swept < 0.2 * (2 * stage.b * stage.reach**4 / 4)
 
 
+@pytest.mark.parametrize(("ratio", "power", "b"), [(10, "126 W", 3), (7, "7.5 kW", 11)])
+def test_a_sun_is_as_wide_as_its_load_asks_and_no_disc(tmp_path, ratio, power, b):
+    rig = new("a", stages="planetary", ratio=ratio, power=power, speed="3000 rpm", out=(path := tmp_path / "a.toml"))
+    assert rig.sizes["stages"][0]["b"] == pytest.approx(b / 1000)
+    text = path.read_text("utf-8")
+    assert 'b = "assumed: for that load, at least 0.35 of the sun\'s diameter"' in text and "at most 4 N/mm2" in text
+
+
 @pytest.mark.parametrize(("name", "count"), [("two", 0), ("four", 6)])
 def test_bearings_that_reach_below_the_level_drag(made, name, count):
     path, answer = made(name)

@@ -19,7 +19,7 @@ from .bearings import LIGHT, PRELOAD
 from .shafts import APART, OVERHANG
 from .sizing import Unit
 from .stages import DRAG, KINDS, Y_W, BevelStage, PlanetaryStage, WormStage
-from .teeth import FACE, K_BEVEL, K_STAR, SLIM, T_WORM, WIDTH
+from .teeth import FACE, K_BEVEL, K_STAR, NARROW, SLIM, T_WORM, WIDTH
 
 #: Fastest air along a housing [m/s].
 STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")
@@ -201,8 +201,10 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
         shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
     elif isinstance(s, PlanetaryStage):
-        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
-        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
+        rule = (
+            f"F_t/(b d_1) (u + 1)/u of sun and planet at most {K_STAR / 1e6:g} N/mm2, standard module, spur teeth"
+        )
+        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": NARROW}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
         shape |= {"needles": f"planet_bearing_{made.numbers[k]}", "drag": DRAG}
     elif isinstance(s, WormStage):

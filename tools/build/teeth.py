@@ -12,6 +12,8 @@ from .stages import KINDS, PLANETS, BevelStage, PlanetaryStage, Stage, WormStage
 K_STAR = 4.0e6
 #: Face width over the pinion's diameter [1].
 WIDTH = 0.8
+#: That of a sun at least, which a small load would have narrower [1].
+NARROW = 0.35
 #: Least number of teeth of a pinion.
 TEETH = 19
 #: Of one for a load that hardly needs gears at all; fewer are undercut without profile shift.
@@ -137,7 +139,7 @@ def _planetary(kind: str, u: float, T: float, n: float, a: float | None = None) 
     sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
     z_1, z_3 = min(sizes, key=lambda size: (max(_off(size[0], sum(size), u), CLOSE), size[0]))
     m_n = next(m for m in MODULES if m * z_1 >= 1000 * d_1) / 1000
-    b = max(round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)), 1) / 1000
+    b = round(1000 * max(WIDTH * d_1**3 / (m_n * z_1) ** 2, NARROW * m_n * z_1)) / 1000
     return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, 0.0, z_3)
 
 
