@@ -38,8 +38,8 @@ PER_MINUTE = dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rp
 ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
 
 
-#: Units in which a person gives what the model has in SI.
-USUAL = {"W": "kW", "m": "mm"}
+#: Units in which a person may have meant a bare number of what the model has in SI.
+USUAL = {"W": ("kW", "W"), "m": ("mm", "m"), "m3": ("l",)}
 #: SI units whose values must say whether they hold an angle; of others, as N.m.s, either form is usual.
 ANGULAR = ("rad/s", "rad", "1", "N.m")
 #: A comma between digits.
@@ -167,8 +167,8 @@ def refuse_comma(text: str, name: str) -> None:
 def _without_unit(name: str, value: object, written: str, unit: str) -> str:
     """What is said of a number without a unit: how it may have been meant."""
     target = unit.removesuffix("(difference)").strip()
-    usual = f'"{value} {USUAL[target]}" or ' if target in USUAL else ""
-    return f'{name} = {written} has no unit. Write {usual}"{value} {show_unit(unit)}" (expected a unit like {target}).'
+    ways = " or ".join(f'"{value} {usual}"' for usual in USUAL.get(target, (show_unit(unit),)))
+    return f"{name} = {written} has no unit. Write {ways} (expected a unit like {target})."
 
 
 def to_si(value: object, unit: str, *, name: str = "value") -> float:
@@ -314,5 +314,6 @@ def text(number: float, unit: str, digits: int = 6) -> str:
 
 def example(unit: str) -> str:
     """A value a user could write for a unit."""
-    typical = {"K": "60 degC", "rad/s": "1450 rpm", "m": "62 mm", "m2": "0.8 m2", "N.m": "40 N.m", "1": "0.5"}
+    typical = {"K": "60 degC", "rad/s": "1450 rpm", "N.m": "40 N.m", "W": "7.5 kW", "1": "0.5"}
+    typical |= {"m": "62 mm", "m2": "0.8 m2", "m3": "20 l"}
     return typical.get(unit, f"1 {show_unit(unit)}")

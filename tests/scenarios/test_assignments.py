@@ -63,7 +63,7 @@ def test_all_mistakes_at_once(scenario: Scenario) -> None:
         '"room.T" is no assignment. Write name=value with its unit, for example "room.T=20 degC".',
         'oil = MINNR: unknown oil "MINNR". Did you mean "MINR" or "MINE"?',
         'oil.V = "-1 l" is out of range. It must be above 0 l.',
-        'oil.V = "1 kg": unit "kg" does not fit m3. Write for example "1 m3".',
+        'oil.V = "1 kg": unit "kg" does not fit m3. Write for example "20 l".',
         f'sun_bearing = PAOR: unknown bearing "PAOR". Known: {", ".join(scenario_bearings(scenario))}.',
         '"=3" is no assignment. Write name=value with its unit, for example "room.T=20 degC".',
     )

@@ -534,6 +534,8 @@ def test_a_file_that_was_begun_does_not_stay(monkeypatch, tmp_path):
         ),
         (("--speed", "0 rpm"), "must be above 0"),
         (("--power", "22"), '--power = "22" has no unit. Write "22 kW" or "22 W"'),
+        (("--power", "40 N.m"), 'unit "N.m" does not fit W. Write for example "7.5 kW".'),
+        (("--oil-volume", "20"), '--oil-volume = "20" has no unit. Write "20 l" (expected a unit like m3).'),
         (("--power", "2,2 kW"), 'has a decimal comma. Write "2.2 kW"'),
         (("--ratio", "3,15"), '"3.15"'),
         (("--housing", "100x90x80 mm"), "is too small for the gears: expected"),

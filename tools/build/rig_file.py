@@ -201,9 +201,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
         shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
     elif isinstance(s, PlanetaryStage):
-        rule = (
-            f"F_t/(b d_1) (u + 1)/u of sun and planet at most {K_STAR / 1e6:g} N/mm2, standard module, spur teeth"
-        )
+        rule = f"F_t/(b d_1) (u + 1)/u of sun and planet at most {K_STAR / 1e6:g} N/mm2, standard module, spur teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": NARROW}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
         shape |= {"needles": f"planet_bearing_{made.numbers[k]}", "drag": DRAG}
