@@ -7,6 +7,7 @@ import re
 
 import casadi as ca
 import gearheat as gh
+import pint
 import pytest
 from for_each import thin
 from gearheat.model.errors import ScenarioError
@@ -535,6 +536,7 @@ def test_a_file_that_was_begun_does_not_stay(monkeypatch, tmp_path):
         (("--speed", "0 rpm"), "must be above 0"),
         (("--power", "22"), '--power = "22" has no unit. Write "22 kW" or "22 W"'),
         (("--power", "40 N.m"), 'unit "N.m" does not fit W. Write for example "7.5 kW".'),
+        (("--power", "7.5 mW"), 'is in milliwatts. Write "7.5 MW" if megawatts are meant, else W.'),
         (("--oil-volume", "20"), '--oil-volume = "20" has no unit. Write "20 l" (expected a unit like m3).'),
         (("--power", "2,2 kW"), 'has a decimal comma. Write "2.2 kW"'),
         (("--ratio", "3,15"), '"3.15"'),
@@ -549,6 +551,65 @@ def test_name_plates_that_are_wrong(gearheat, tmp_path, options, words):
     assert answer.code == 2
     assert words in answer.err
     assert not (tmp_path / "a.toml").exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        ({"power": "1.100 kW"}, '--power: 1.100 is read as 1.1 kW. Write "1100 kW" if a thousand is meant.'),
+        ({"speed": "1.450 rpm"}, '--speed: 1.450 is read as 1.45 rpm. Write "1450 rpm" if a thousand is meant.'),
+        ({"speed": "1.450 min-1"}, '--speed: 1.450 is read as 1.45 min-1. Write "1450 min-1" if a thousand is meant.'),
+        ({"power": "9 kW", "oil_volume": "1.200 l"}, '--oil-volume: 1.200 is read as 1.2 l. Write "1200 l" if'),
+        ({"power": "0.750 kW", "housing": "1.125 m2"}, ""),
+        ({"power": "55.000 kW", "speed": "1450.125 rpm"}, ""),
+    ],
+)
+def test_what_may_be_thousands_is_told(option, told):
+    notes = new("a", stages="helical", ratio=4.0, **({"power": "1 W", "speed": "1450 rpm"} | option)).notes
+    assert [note[: len(told)] for note in notes if "a thousand" in note] == [told] * bool(told)
+
+
+def test_what_may_be_thousands_is_told_of_what_is_refused():
+    with pytest.raises(ScenarioError, match=r"too small for the gears.*\n--housing: 1\.200 is read as 1\.2 mm\. Write"):
+        new("a", stages="helical", ratio=4.0, power="1 kW", speed="1450 rpm", housing="1.200x370x430 mm")
+
+
+UREG = pint.UnitRegistry()
+
+
+@pytest.mark.parametrize(
+    ("given", "same"),
+    [
+        ({"power": 750, "speed": 151.8}, {"power": "750 W", "speed": "151.8 rad/s"}),
+        ({"power": 7.5 * UREG.kW, "speed": 1450 * UREG.rpm}, {"power": "7.5 kW"}),
+        ({"housing": 1.2}, {"housing": "1.2 m2"}),
+        ({"housing": 0.8 * UREG.m**2, "oil_volume": 1 * UREG.l}, {"housing": "0.8 m2", "oil_volume": "1 l"}),
+        ({"centre_distance": 0.14, "motor_heat": 50}, {"centre_distance": "140 mm", "motor_heat": "50 W"}),
+        ({"ratio": "4"}, {"ratio": 4.0}),
+    ],
+)
+def test_numbers_in_si_and_quantities_are_taken_as_texts_are(given, same):
+    plate = {"stages": "helical", "ratio": 4.0, "power": "2 kW", "speed": "1450 rpm"}
+    one, other = (new("a", **(plate | values)).sizes for values in (given, same))
+    assert {key: one[key] for key in ("stages", "loss_W")} == {key: other[key] for key in ("stages", "loss_W")}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"name": 5}, "name = 5 is no text."),
+        ({"oil": 5, "bearings": None}, "--oil = 5 is no text.\n--bearings = None is no text."),
+        ({"stages": None}, '--stages = None is no text. Name them from the input on, such as "helical,helical".'),
+        ({"stages": [1, 2]}, "--stages = [1, 2] is no text."),
+        ({"speed": None}, '--speed = None is no value. Give one text, like "1450 rpm", number in SI, or quantity of'),
+        ({"power": 7.5 * UREG.m}, '--power = "7.5 m": unit "m" does not fit W. Write for example "7.5 kW".'),
+        ({"ratio": [4]}, "--ratio = [4] is no value."),
+    ],
+)
+def test_what_is_no_value_in_python_is_named(wrong, words):
+    plate = {"name": "a", "stages": "helical", "ratio": 4.0, "power": "2 kW", "speed": "1450 rpm"}
+    with pytest.raises(ScenarioError, match=re.escape(words)):
+        new(**(plate | wrong))
 
 
 def test_a_power_too_small_for_standard_sizes_leaves_no_rig(gearheat, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import reprlib
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,6 +17,7 @@ from ...model.run.result import Result
 from ...model.run.steady import steady
 from ...model.units import to_si
 from ...scenarios.entries import catalogue
+from ...scenarios.given import spell
 from ...scenarios.load import load as read_rig
 from ..describe.rig import Rig
 from ..show.console import writable, write
@@ -23,7 +25,7 @@ from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions, outside_of
 from .allowed import check
-from .data_sheet import Wanted, wanted_of
+from .data_sheet import Wanted, spell_all, thousands, wanted_of, watts_of
 from .plausible import PLATE, WARM, no_load, notes, usual
 from .rig_file import Around, Losses, around_of, lost, text
 from .sizing import Unit, unit
@@ -59,18 +61,18 @@ def new(
     *,
     stages: str | Sequence[str],
     ratio: float,
-    power: str,
-    speed: str,
+    power: Any,
+    speed: Any,
     oil: str = "ISO VG 220 mineral",
     bearings: str = "auto",
     fan: bool = False,
     cooler: bool = False,
     base: str = "concrete",
-    motor_heat: str | None = None,
-    air_speed: str | None = None,
-    centre_distance: str | None = None,
-    housing: str | None = None,
-    oil_volume: str | None = None,
+    motor_heat: Any = None,
+    air_speed: Any = None,
+    centre_distance: Any = None,
+    housing: Any = None,
+    oil_volume: Any = None,
     out: str | Path | None = None,
 ) -> NewRig:
     """A rig of your own from a name plate: it runs at once, and says the rule of every number.
@@ -80,7 +82,7 @@ def new(
         stages: from the input, such as "helical,helical"; bevel first, worm last, planetary
             ones behind all others, the other way round where the ratio is below 1
         ratio: speed of the input over that of the output; below 1 the input is the slow shaft
-        power: at the input, such as "7.5 kW"
+        power: at the input, such as "7.5 kW"; like all that has a unit a text, a number in SI or a quantity of pint
         speed: of the input, such as "1450 rpm"
         oil: entry of the catalogue, or what a name plate has, such as "CLP PG 460"
         bearings: "ball", "roller" (tapered, face to face), or "auto": rollers on shafts where balls do not last
@@ -106,21 +108,26 @@ def new(
         >>> mine.sizes["assumed"] > 0
         True
     """
-    words = stages.split(",") if isinstance(stages, str) else stages
-    kinds = [kind.strip().lower() for kind in words if kind.strip()]
-    problems = Problems()
-    watts = problems.of(lambda: _watts(power))
+    sizes = {"--motor-heat": motor_heat, "--air-speed": air_speed, "--centre-distance": centre_distance}
+    sizes |= {"--housing": housing, "--oil-volume": oil_volume}
+    plate = {"name": name, "--power": power, "--speed": speed, "--oil": oil, "--bearings": bearings, "--base": base}
+    texts = spell_all(plate | {option: size for option, size in sizes.items() if size is not None})
+    power, speed, problems = texts["--power"], texts["--speed"], Problems()
+    kinds, ratio = _kinds(stages), _number(ratio)
+    watts = problems.of(lambda: watts_of(power))
     w = problems.of(lambda: to_si(speed, "rad/s", name="--speed"))
-    plate = 1.0 if watts is None else watts, 100.0 if w is None else w  # what is wrong else is told, too
-    wanted = problems.of(lambda: wanted_of(centre_distance, housing, oil_volume))
-    problems.of(lambda: check(kinds, ratio, *plate, bearings, wanted or Wanted()))
+    drive = 1.0 if watts is None else watts, 100.0 if w is None else w  # what is wrong else is told, too
+    wanted = problems.of(lambda: wanted_of(*map(texts.get, ("--centre-distance", "--housing", "--oil-volume"))))
+    problems.of(lambda: check(kinds, ratio, *drive, bearings, wanted or Wanted()))
     entry = problems.of(lambda: _oil(oil))
-    around = problems.of(lambda: around_of(base, fan, cooler, motor_heat, air_speed, housing is not None))
+    motor, air = map(texts.get, ("--motor-heat", "--air-speed"))
+    around = problems.of(lambda: around_of(base, fan, cooler, motor, air, housing is not None))
     if not re.fullmatch(r"[\w.-]+", name):
         problems.append(f'"{name}" is no name. Take letters, digits, _, - and dots.')
-    if problems or wanted is None or entry is None or around is None:
-        raise ScenarioError(problems)
-    made = unit(kinds, ratio, *plate, bearings, wanted)
+    made = None if problems else problems.of(partial(unit, kinds, ratio, *drive, bearings, wanted or Wanted()))
+    grouped = tuple(thousands(texts))
+    if made is None or entry is None or around is None:
+        raise ScenarioError([*problems, *grouped])
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml" if out is None else Path(out)
         fitting(path, "a rig file")
@@ -129,13 +136,28 @@ def new(
             raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
         try:
-            return _solved(path, made, around, partial(text, made, doc, speed, entry, around))
+            rig = _solved(path, made, around, partial(text, made, doc, speed, entry, around))
+            return replace(rig, notes=(*grouped, *rig.notes))
         except BaseException as error:
             path.unlink(missing_ok=True)
             if not isinstance(error, GearheatError):
                 raise
             why = error.problems[0]
             raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
+
+
+def _kinds(stages: Any) -> list[str]:
+    """Kinds of stages from a text, or from one of each stage."""
+    words = stages.split(",") if isinstance(stages, str) else stages
+    if not isinstance(words, Sequence) or not all(isinstance(word, str) for word in words):
+        found = reprlib.repr(stages)
+        raise ScenarioError(f'--stages = {found} is no text. Name them from the input on, such as "helical,helical".')
+    return [word.strip().lower() for word in words if word.strip()]
+
+
+def _number(ratio: Any) -> float:
+    """A ratio that may be a text, or a quantity of pint."""
+    return ratio if isinstance(ratio, int | float) else to_si(spell(ratio, name="--ratio"), "1", name="--ratio")
 
 
 def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[Losses], str]) -> NewRig:
@@ -220,10 +242,3 @@ def _oil(name: str) -> str:
     if "c_p" not in catalogue("oil")[known].values:
         raise ScenarioError(f'"{known}" is a grease. Name an oil. See `gearheat list`.')
     return known
-
-
-def _watts(power: str) -> float:
-    """The power at the input [W], a mechanical one."""
-    if re.search(r"V\W*A\s*$", power):
-        raise ScenarioError(f'--power = "{power}" is apparent power. Give that of the shaft, such as "7.5 kW".')
-    return to_si(power, "W", name="--power")
