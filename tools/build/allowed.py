@@ -76,16 +76,34 @@ def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, 
     choices = HELD if [*kinds[-1:]] == [IN_LINE] else CHOICES
     d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0)
     if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
-        needed = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
-        ways = [f"{most / T * power / 1000:.4g} kW or less", f"{speed * T / most * 30 / math.pi:.4g} rpm or more"]
+        needed = (16 * T * ROUNDED / (math.pi * SHEAR)) ** (1 / 3)
+        rpm = at_least(speed * T / most * 30 / math.pi, 4)
+        ways = [f"{at_most(most / T * power / 1000, 4)} kW or less", f"{rpm} rpm or more"]
         if most > power / speed:
-            ways.insert(1, f"a ratio of {most / T * ratio:.3g} or less")
-        if bearings == "ball" and needed <= largest_bore(choices["roller"]) / ROUNDED:
+            ways.insert(1, f"a ratio of {at_most(most / T * ratio, 3)} or less")
+        if bearings == "ball" and needed <= largest_bore(choices["roller"]):
             ways.append("--bearings roller")
         yield (
             f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
             f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}."
         )
+
+
+def at_least(value: float, digits: int) -> str:
+    """A number that is rounded up: what a user may take without being below it.
+
+    Args:
+        value: above 0
+        digits: significant ones
+    """
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return f"{math.ceil(value / step) * step:.{digits}g}"
+
+
+def at_most(value: float, digits: int) -> str:
+    """The same rounded down."""
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return f"{math.floor(value / step) * step:.{digits}g}"
 
 
 def _misplaced(kinds: Sequence[str], order: int) -> Iterator[str]:

@@ -143,7 +143,10 @@ def new(
             if not isinstance(error, GearheatError):
                 raise
             why = error.problems[0]
-            raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
+            ways = "Check --power and --speed"
+            if isinstance(error, SolveError) and not cooler:
+                ways += ", or give it --cooler"
+            raise ScenarioError(f"{power} at {speed} gives no gearbox. {ways}. {why}") from None
 
 
 def _kinds(stages: Any) -> list[str]:
