@@ -36,6 +36,8 @@ OFF = 0.003
 PLATE = 0.02
 #: Usual loads of a stage [Pa].
 LOADED = {"worm": ("the wheel's torque over a3", 0.2e6, 1.3e6), "gears": ("K*", 1.0e6, 6.0e6)}
+#: Area of a housing over that of the box around the gears, above which its unit may be wrong [1].
+WIDE = 4.0
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -84,6 +86,9 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
     yield from _too_fast(made)
     if made.centre:
         yield from _loaded(made)
+    if made.area > WIDE * made.drawn:
+        times = f"{made.area / made.drawn:.0f} times the {made.drawn:.3g} m2 of a box around the gears"
+        yield f"--housing has {made.area:.3g} m2, {times}. Check its unit."
     eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
     height = sizing.height_of_axes(made)
     deepest = height - max(map(sizing.lowest, made.stages))

@@ -16,7 +16,7 @@ from typing import Any
 from ...model.errors import ScenarioError
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
-from .allowed import IN_LINE, LAST, check, first_ratio
+from .allowed import IN_LINE, LAST, at_least, check, first_ratio
 from .data_sheet import Wanted
 from .shafts import Shaft, draw_shafts, find_tight
 from .stages import BevelStage, PlanetaryStage, Stage, WormStage
@@ -52,7 +52,7 @@ ALONG = 0.5
 @dataclass(frozen=True)
 class Unit:
     """A gear unit: ratio that is asked for, stages and shafts from the fast one on, the box around them and what is
-    free below tips; of a data sheet the oil [m3] and the last centre distance [m].
+    free below tips; of a data sheet the oil [m3] and the last centre distance [m]; area of the box around gears [m2].
     """
 
     asked: float
@@ -65,6 +65,7 @@ class Unit:
     below: float
     volume: float | None = None
     centre: float | None = None
+    drawn: float = math.inf
 
     @property
     def increases(self) -> bool:
@@ -218,14 +219,15 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
     """The unit in the housing, and with the oil, that a data sheet says."""
     drawn = made.length, made.width, made.height
     box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in drawn)
-    found = replace(made, length=box[0], width=box[1], height=box[2])
+    found = replace(made, length=box[0], width=box[1], height=box[2], drawn=made.area)
     room = 2 * made.wall, 2 * (END - 1) * made.wall, made.wall + made.below
     least = [side - part for side, part in zip(drawn, room, strict=True)]
     if any(side < need for side, need in zip(box, least, strict=True)):
-        need = replace(made, length=least[0], width=least[1], height=least[2]).area
+        need = made.area * max(part / side for part, side in zip(least, drawn, strict=True)) ** 2
+        sides = _sides([math.ceil(1000 * side) / 1000 for side in least])
         raise ScenarioError(
-            f"--housing of {_sides(box)} is too small for the gears: expected {_sides(least)} at least, or"
-            f" {need:.3g} m2. Give a larger one, or a lower power or ratio."
+            f"--housing of {_sides(box)} is too small for the gears: expected {sides} at least, or"
+            f" {at_least(need, 3)} m2 by its area alone. Give a larger one, or a lower power or ratio."
         )
     level = bath(found)["level"] or (wanted.volume or 0.0) / (found.length * found.width)
     if level > found.height - made.wall:
