@@ -739,6 +739,14 @@ def test_steep_tapered_bearings_are_for_axial_loads(axial, steep):
     assert (a.name.startswith("SKF 313"), b.name.startswith("SKF 313")) == (steep, steep)
 
 
+@pytest.mark.parametrize(("power", "rule"), [("7.5 kW", "1.6 times 41.3 mm"), ("2 MW", "1.204 times 265.8 mm")])
+def test_bearings_of_a_carrier_say_their_rule(tmp_path, power, rule):
+    new("a", stages="planetary", ratio=7, power=power, speed="1450 rpm", cooler=True, out=(path := tmp_path / "a.toml"))
+    said = re.findall(r"bore above (.*) by load", path.read_text("utf-8"))
+    assert said[-1] == f"{rule} by torsion, on a carrier, a life above 1e6 h"
+    assert "carrier" not in said[0]
+
+
 def test_friction_of_tapered_bearings_goes_by_the_external_axial_load():
     """As their maker has it (SKF6000, table 2a): the thrust of their radial loads is not in it."""
     made = new("a", stages="helical", ratio=4, power="15 kW", speed="1450 rpm", bearings="roller")

@@ -67,6 +67,8 @@ SPIGOT = 0.77
 FRAME = 3.0
 #: How far it reaches beyond foot or flange, at either end, over their length [1].
 BEYOND = 0.75
+#: Life of a bearing above which its figure says nothing [h].
+ENDLESS = 1e6
 #: Speed at which churning is stated, 200 rpm [rad/s].
 CHURNED = 200 * math.pi / 30
 
@@ -240,7 +242,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "name": f"{names[k]}_bearing_{end}",
             "path": f"{names[k]}_path_{end}",
             "bearing": bearing,
-            "life": _num(life),
+            "life": f"of {_num(life)} h" if life < ENDLESS else f"above {ENDLESS:.0e} h".replace("+0", ""),
             "dips": sizing.stands_in_oil(made, k, bearing),
             "kind": kind,
         }
@@ -258,6 +260,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
         "preload": s.preload,
         "d": s.d,
         "d_torsion": s.d_torsion,
+        "carried": s.bore / s.d_torsion if s.bore > s.d_torsion else None,
     }
 
 

@@ -26,9 +26,9 @@ WEB = 0.003
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft: torque, speed [1/s], diameters of its larger and smaller seat and that by torsion, places of its gears
-    and bearing b, both bearings with outside diameters, lives [h] and kinds, how much too large their bore is for the
-    pinion that is cut on the shaft, and their preload [N] where no teeth load them.
+    """A shaft: torque, speed [1/s], diameters of its larger and smaller seat, that by torsion and that asked of seats,
+    places of its gears and bearing b, both bearings with outside diameters, lives [h] and kinds, how much too large
+    their bore is for the pinion that is cut on the shaft, and their preload [N] where no teeth load them.
     """
 
     T: float
@@ -36,6 +36,7 @@ class Shaft:
     d: float
     d_seal: float
     d_torsion: float
+    bore: float
     places: tuple[float, ...]
     span: float
     bearings: tuple[str, str]
@@ -108,7 +109,7 @@ def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     places = tuple(x for _, x, _ in gears)
     return [
         Shaft(
-            *(T, n, max(a.d, b.d), min(a.d, b.d), d, places, span, (a.name, b.name), (a.D, b.D), lives),
+            *(T, n, max(a.d, b.d), min(a.d, b.d), d, bore, places, span, (a.name, b.name), (a.D, b.D), lives),
             (a.kind, b.kind),
             excess,
             PRELOAD * min(a.C, b.C) if a.Y and not gears else 0.0,
