@@ -173,6 +173,38 @@ def test_at_the_name_plate_it_takes_the_power_of_the_name_plate(tmp_path, stages
     assert float(stated[1]) == pytest.approx(100 * sizes["efficiency"], rel=0.012) and bool(stated[2]) == solved
 
 
+SERVO = {"stages": "planetary", "ratio": 10, "power": "126 W", "speed": "3000 rpm"}
+SPURS = {"stages": "spur,spur", "ratio": 9, "power": "30 kW", "speed": "1450 rpm", "oil": "ISO VG 460 PAG"}
+
+
+@pytest.mark.parametrize(
+    ("plate", "words"),
+    [
+        (
+            SERVO,
+            ("is below the usual 91 to 99 %.", "of another kind (--bearings ball), or an oil of a lower viscosity"),
+        ),
+        (SERVO | {"bearings": "roller"}, ("(--bearings ball), or",)),
+        (
+            SERVO | {"bearings": "ball"},
+            ("bearing, 71 %: those of planets have most of it, and no option changes them",),
+        ),
+        (
+            SERVO | {"stages": "spur", "ratio": 8, "speed": "6000 rpm"},
+            (": bearings of less bore, or an oil of a lower",),
+        ),
+        (SPURS, ("the efficiency of 98.74 % is above the usual 95 to 98.5 %.",)),
+        (
+            SPURS | {"stages": "spur", "ratio": 1, "power": "7.5 kW", "speed": "2900 rpm"},
+            ("of the loss, above the usual 5 to 40 %.",),
+        ),
+    ],
+)
+def test_what_is_not_usual_is_told_with_its_range_and_what_helps(plate, words):
+    notes = "\n".join(new("a", **plate).notes)
+    assert all(part in notes for part in words), notes
+
+
 def test_a_unit_that_loses_more_without_load_than_its_power_is_told():
     notes = new("a", stages="bevel", ratio=3.0, power="1 W", speed="1450 rpm").notes
     assert any(

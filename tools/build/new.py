@@ -212,7 +212,7 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[Losses], st
         "base": around.base,
         "foot_share": foot / (loss + (around.motor or 0.0)),
     }
-    return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"], around)))
+    return NewRig(scenario, sizes, tuple(notes(made, sizes, rest["input.w"], around, rest.losses())))
 
 
 def _outside(result: Result) -> Iterator[str]:

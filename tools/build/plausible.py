@@ -11,7 +11,7 @@ import numpy as np
 from ...model.files import tables
 from . import sizing
 from .allowed import last_ratio
-from .bearings import LIFE
+from .bearings import BALLS, LIFE
 from .rig_file import Around
 from .shafts import gaps
 from .sizing import Unit
@@ -67,10 +67,12 @@ def no_load(stages: str | Sequence[str], kW: float) -> tuple[float, float]:
     """Shares of the loss [%] that the page's units of such stages and power have without load."""
     last, known = (stages.split(",") if isinstance(stages, str) else stages)[-1], MACHINES["no_load"]
     low, high = known.get(last, known["gears"])
-    return low, high if kW >= 1 else high + known["small"]
+    return low, high if kW >= 1 else min(high + known["small"], 100)
 
 
-def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) -> Iterator[str]:
+def notes(
+    made: Unit, sizes: Mapping[str, Any], speed: float, around: Around, losses: Mapping[str, float]
+) -> Iterator[str]:
     """What a user should know about a unit, and what its largest loss asks for where it is hot or lossy.
 
     Args:
@@ -78,6 +80,7 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
         sizes: the JSON object of `gearheat new`
         speed: of the input [rad/s]
         around: what stands around it and cools it
+        losses: of its parts [W]
     """
     if (rpm := round(30 / math.pi * speed)) > FAST:
         yield f"the input turns at {rpm:,} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
@@ -89,7 +92,6 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
     if made.area > WIDE * made.drawn:
         times = f"{made.area / made.drawn:.0f} times the {made.drawn:.3g} m2 of a box around the gears"
         yield f"--housing has {made.area:.3g} m2, {times}. Check its unit."
-    eta, (low, _) = 100 * sizes["efficiency"], sizes["usual"]["efficiency_pct"]
     height = sizing.height_of_axes(made)
     deepest = height - max(map(sizing.lowest, made.stages))
     if (level := sizing.bath(made)["level"]) is not None and not deepest < level < height:
@@ -103,11 +105,20 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
             f"it needs no fan: without one the oil is at {bare['oil_degC']:.1f} degC, the efficiency"
             f" {100 * bare['efficiency']:.2f} %. Leave out --fan, unless the unit has one{housing}."
         )
-    hot = sizes["oil_degC"] > WARM[1]
-    if hot:
+    yield from _lossy(made, sizes, around, losses)
+    if sizes["outside"]:
+        yield f"laws far outside their range have a tenth of the loss or more: {'; '.join(sizes['outside'])}."
+    yield from _bearings(made)
+
+
+def _lossy(made: Unit, sizes: Mapping[str, Any], around: Around, losses: Mapping[str, float]) -> Iterator[str]:
+    """A unit that is hot, or loses other than usual, and what its largest loss asks for."""
+    if hot := sizes["oil_degC"] > WARM[1]:
         cooler = "" if around.cooler else f"--cooler (for {sizes['loss_W'] / 1000:.2g} kW), "
         ways = cooler if around.fan or around.cooler else f"--fan or {cooler}"
         yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
+    eta, idle = 100 * sizes["efficiency"], 100 * sizes["no_load_W"] / sizes["loss_W"]
+    (low, high), _, (least, most) = sizes["usual"].values()
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     if abs(sizes["power_W"] / made.power - 1) > PLATE:
@@ -115,13 +126,23 @@ def notes(made: Unit, sizes: Mapping[str, Any], speed: float, around: Around) ->
             f"it takes {sizes['power_W']:.3g} W, not the {made.power:.3g} W of the name plate: without load it loses"
             f" {sizes['no_load_W']:.3g} W."
         )
+    if not low <= eta <= high:
+        yield f"the efficiency of {eta:.2f} % is {'below' if eta < low else 'above'} the usual {low:g} to {high:g} %."
+    if round(idle) > most:
+        yield f"without load it has {idle:.0f} % of the loss, above the usual {least:g} to {most:g} %."
     if hot or eta < low:
         kind, loss = next(iter(sizes["losses_W"].items()))
         share = loss / sum(sizes["losses_W"].values())
-        yield f"the largest loss is that of {kind}, {100 * share:.0f} %: {MACHINES['advice'][kind]}."
-    if sizes["outside"]:
-        yield f"laws far outside their range have a tenth of the loss or more: {'; '.join(sizes['outside'])}."
-    yield from _bearings(made)
+        yield f"the largest loss is that of {kind}, {100 * share:.0f} %: {_advise(made, kind, loss, losses)}."
+
+
+def _advise(made: Unit, kind: str, loss: float, losses: Mapping[str, float]) -> str:
+    """What lowers the loss of parts of a kind; of bearings no option that leaves them as they are, or rubs more."""
+    if kind == "bearing":
+        needles = sum(P for part, P in losses.items() if part.startswith("planet_bearing"))
+        rollers = any(shaft.kinds != BALLS for shaft in made.shafts)
+        kind = "needles" if needles > loss / 2 else "rollers" if rollers else kind
+    return str(MACHINES["advice"][kind])
 
 
 def _too_fast(made: Unit) -> Iterator[str]:
