@@ -37,6 +37,14 @@ def test_every_number_of_every_rig_and_the_counts_of_the_page(gearheat, tmp_path
     assert answer.code == 0
     assert parts.keys() >= set(list_rigs())
     assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 3  # catalogues, laws and sources
+    told = {r["name"]: r for r in parts["catalogues"]["rows"]}
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in PAGE.splitlines()]
+    beside = {c[0]: c[2:] for c in cells if c[0] in told}
+    assert len(beside) > 20
+    assert beside == {name: [f"{told[name]['model']:.1f} %", told[name]["why"].split()[1]] for name in beside}
+    warm = [r["model"] for r in told.values() if r["unit"] == "W/K"]
+    given_off = [float(value) for c in cells if c[0].startswith("a = ") for value in c[2].split("; ")]
+    assert given_off == pytest.approx(warm, rel=0.005)
     printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, PAGE, re.MULTILINE)}
     counted = {name: [*part["counts"].values(), *part["kinds"].values()] for name, part in parts.items()}
     assert printed == {name: numbers for name, numbers in counted.items() if any(numbers)}
