@@ -10,7 +10,7 @@ import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
 from gearheat.tools.diagnose.answer.evidence import Rows
 from gearheat.tools.diagnose.api import Diagnosis
-from gearheat.tools.diagnose.report.page import render
+from gearheat.tools.diagnose.report.page import _bars, render
 from pages import problems_of, words_that_collide
 
 
@@ -42,6 +42,12 @@ def test_the_order_of_the_page() -> None:
     places = [text.find(words) for words in order]
     assert -1 not in places
     assert places == sorted(places)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_cause_has_one_bar(kind: str) -> None:
+    names = [bar["name"] for bar in _bars(KINDS[kind]())]
+    assert len(set(names)) == len(names)
 
 
 def test_a_picture_a_cause_and_the_readings_behind_it() -> None:
