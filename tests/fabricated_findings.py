@@ -196,7 +196,7 @@ def unexplained(**given: Any) -> Findings:
             Answer(causes=(("model.unexplained",),), probability=0.94),
             Answer(causes=((CHURNING,),), probability=0.05),
         ),
-        "causes": (cause(CHURNING, 0.05),),
+        "causes": (Cause(id="model.unexplained", probability=0.94, mc_error=0.01), cause(CHURNING, 0.05)),
         "remainder": Remainder(probability=0.94, channels=(RemainderChannel(channel="T_oil", rms=1.9, unit="K"),)),
     }
     return findings("unexplained", **(full | given))
