@@ -853,6 +853,17 @@ def test_the_housing_that_a_refusal_names_goes(plate, housing):
         assert new("a", **plate, housing=other).sizes["oil_degC"] > 20
 
 
+@pytest.mark.parametrize(("power", "housing"), [("1.5 kW", "185x125x165 mm"), ("4 kW", "235x130x175 mm")])
+def test_the_stages_of_a_geared_motor_lie_back_to_back(power, housing):
+    """Its output stands behind its input: all stages beside one another would not go into its housing."""
+    plate = {"stages": "helical,helical", "ratio": 20, "power": power, "speed": "1420 rpm", "base": "flange"}
+    rig = new("a", **plate, centre_distance="80 mm", housing=housing)
+    length, _, rest = housing.partition("x")
+    assert rig.scenario.spec.part("cooling").values["length"] == pytest.approx(float(length) / 1000)
+    with pytest.raises(ScenarioError, match="too small for the gears"):
+        new("a", **plate, centre_distance="80 mm", housing=f"{0.7 * float(length):.0f}x{rest}")
+
+
 def test_a_housing_that_is_much_too_large_is_told():
     plate = {"stages": "helical,helical", "ratio": 12.0, "power": "7.5 kW", "speed": "1450 rpm"}
     notes = new("a", **plate, housing="328x155x210 cm").notes

@@ -220,7 +220,7 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
     drawn = made.length, made.width, made.height
     box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in drawn)
     found = replace(made, length=box[0], width=box[1], height=box[2], drawn=made.area)
-    room = 2 * made.wall, 2 * (END - 1) * made.wall, made.wall + made.below
+    room = 2 * made.wall + _folded(made), 2 * (END - 1) * made.wall, made.wall + made.below
     least = [side - part for side, part in zip(drawn, room, strict=True)]
     if any(side < need for side, need in zip(box, least, strict=True)):
         need = made.area * max(part / side for part, side in zip(least, drawn, strict=True)) ** 2
@@ -237,6 +237,15 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
             f" {_sides(box)}. Give {most:.3g} l or less, which reaches the axes."
         )
     return found
+
+
+def _folded(made: Unit) -> float:
+    """How much shorter a housing may be whose output stands behind the input, as of coaxial geared motors [m]."""
+    if any(type(s) is not Stage for s in made.stages):
+        return 0.0
+    last, row = made.stages[-1], sum(s.along for s in made.stages)
+    longest = max(s.r_1 + s.a + s.r_2 for s in made.stages)
+    return row + made.stages[0].r_1 + last.r_2 - longest
 
 
 def _sides(box: Sequence[float]) -> str:
