@@ -129,9 +129,7 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         name = TIME.name
     if name not in known:
         close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
-        end, _, key = name.rpartition(".")
-        other = f"{end}.{'load' if key == 'tau' else 'tau'}"
-        if key in ("tau", "load") and other in known:  # an FMU takes either, as it is exported
+        if (other := other_torque(name)) in known:  # an FMU takes either, as it is exported
             close = f' It takes {other}. An FMU that takes {name} is exported with --set "{name}=... N.m".'
         raise DataError(f'there is no input "{name}".{close}')
     quantity = known[name]
@@ -145,6 +143,13 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         if "may mean" in str(error):
             raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
+
+
+def other_torque(path: str) -> str:
+    """The load of the end whose torque is named, the torque of one whose load is; "" of everything else."""
+    end, _, key = path.rpartition(".")
+    other = {"tau": "load", "load": "tau"}.get(key)
+    return f"{end}.{other}" if other else ""
 
 
 def _in_range(quantity: Quantity, value: float) -> float:

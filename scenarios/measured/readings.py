@@ -150,7 +150,7 @@ def about(study: Measured, row: int) -> dict[str, Any]:
     c = study.campaign
     test = int(c.test[row])
     direction = 2 if c.direction[row] < 0 else 1
-    return {"point": int(c.points[row]), "test": c.number(test), "direction": direction, "oil": c.oil[test]}
+    return {"point": int(c.points[row]), "test": c.numbers[test], "direction": direction, "oil": c.oil[test]}
 
 
 def read_result(path: Path, study: Measured) -> Table:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -192,9 +193,11 @@ class Campaign(Sensed):
         """The sensor of a name."""
         return next(s for s in self.sensors if s.name == name)
 
-    def number(self, test: int) -> int:
-        """Number of a test: as in the file where all have one, else its place in the running order."""
-        return int(self.names[test]) if self.names and all(name.isdigit() for name in self.names) else test + 1
+    @cached_property
+    def numbers(self) -> tuple[int, ...]:
+        """Numbers of the tests: as in the file where all have one, else their places in the running order."""
+        counted = bool(self.names) and all(name.isdigit() for name in self.names)
+        return tuple(map(int, self.names)) if counted else tuple(range(1, self.n_tests + 1))
 
     def range_of(self, kind: str) -> tuple[float, float] | None:
         """Least and largest magnitude of the first given sensor of a kind; None without one."""

@@ -65,7 +65,7 @@ def test_after_240_minutes_the_oil_is_where_the_steady_solve_says(result: dict, 
     for test in range(study.campaign.n_tests):
         first = int(np.flatnonzero(study.campaign.test == test)[0])
         values = {path: v for path, v in (study.oil(test) | study.given(first)).items() if path in flat.index}
-        row = rows[study.campaign.number(test), 1]
+        row = rows[study.campaign.numbers[test], 1]
         assert steady(flat, values)["oil.T"][0] - 273.15 == pytest.approx(row["T_oil_C"], abs=0.05)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ...model.errors import ScenarioError
 from .bearings import CHOICES, HELD, largest_bore
@@ -77,10 +77,10 @@ def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, 
     d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0)
     if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
         needed = (16 * T * ROUNDED / (math.pi * SHEAR)) ** (1 / 3)
-        rpm = at_least(speed * T / most * 30 / math.pi, 4)
-        ways = [f"{at_most(most / T * power / 1000, 4)} kW or less", f"{rpm} rpm or more"]
+        kW, rpm = most / T * power / 1000, speed * T / most * 30 / math.pi
+        ways = [f"{safe(kW, 4, math.floor)} kW or less", f"{safe(rpm, 4, math.ceil)} rpm or more"]
         if most > power / speed:
-            ways.insert(1, f"a ratio of {at_most(most / T * ratio, 3)} or less")
+            ways.insert(1, f"a ratio of {safe(most / T * ratio, 3, math.floor)} or less")
         if bearings == "ball" and needed <= largest_bore(choices["roller"]):
             ways.append("--bearings roller")
         yield (
@@ -89,21 +89,16 @@ def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, 
         )
 
 
-def at_least(value: float, digits: int) -> str:
-    """A number that is rounded up: what a user may take without being below it.
+def safe(value: float, digits: int, whole: Callable[[float], int]) -> str:
+    """A limit as a user may take it without being beyond it.
 
     Args:
         value: above 0
         digits: significant ones
+        whole: `math.ceil` of one that must not be less, `math.floor` of one that must not be more
     """
     step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return f"{math.ceil(value / step) * step:.{digits}g}"
-
-
-def at_most(value: float, digits: int) -> str:
-    """The same rounded down."""
-    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return f"{math.floor(value / step) * step:.{digits}g}"
+    return f"{whole(value / step) * step:.{digits}g}"
 
 
 def _misplaced(kinds: Sequence[str], order: int) -> Iterator[str]:

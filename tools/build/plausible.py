@@ -118,7 +118,7 @@ def _lossy(made: Unit, sizes: Mapping[str, Any], around: Around, losses: Mapping
         ways = cooler if around.fan or around.cooler else f"--fan or {cooler}"
         yield f"the oil is above {WARM[1]:g} degC: such a unit needs {ways}fins, or a larger housing."
     eta, idle = 100 * sizes["efficiency"], 100 * sizes["no_load_W"] / sizes["loss_W"]
-    (low, high), _, (least, most) = sizes["usual"].values()
+    (low, high), (least, most) = (sizes["usual"][key] for key in ("efficiency_pct", "no_load_pct"))
     if eta < 100 * POOR:
         yield "most of the power is lost: standard modules and bearings are too large for it."
     if abs(sizes["power_W"] / made.power - 1) > PLATE:

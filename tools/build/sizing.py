@@ -16,7 +16,7 @@ from typing import Any
 from ...model.errors import ScenarioError
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
-from .allowed import IN_LINE, LAST, at_least, check, first_ratio
+from .allowed import IN_LINE, LAST, check, first_ratio, safe
 from .data_sheet import Wanted
 from .shafts import Shaft, draw_shafts, find_tight
 from .stages import BevelStage, PlanetaryStage, Stage, WormStage
@@ -227,7 +227,7 @@ def _boxed(made: Unit, wanted: Wanted) -> Unit:
         sides = _sides([math.ceil(1000 * side) / 1000 for side in least])
         raise ScenarioError(
             f"--housing of {_sides(box)} is too small for the gears: expected {sides} at least, or"
-            f" {at_least(need, 3)} m2 by its area alone. Give a larger one, or a lower power or ratio."
+            f" {safe(need, 3, math.ceil)} m2 by its area alone. Give a larger one, or a lower power or ratio."
         )
     level = bath(found)["level"] or (wanted.volume or 0.0) / (found.length * found.width)
     if level > found.height - made.wall:

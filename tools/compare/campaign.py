@@ -62,7 +62,7 @@ def runs_of(scenario: Scenario, flat: FlatModel, study: Measured | None, tests: 
     wanted = _parse_tests(tests, study)
     played = effective(flat)  # the FMU lacks what has no effect
     indices = range(study.campaign.n_tests)
-    return tuple(_run_of(study, played, test) for test in indices if study.campaign.number(test) in wanted)
+    return tuple(_run_of(study, played, test) for test in indices if study.campaign.numbers[test] in wanted)
 
 
 def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
@@ -92,7 +92,7 @@ def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
     read = [k for k, row in enumerate(rows) if row in study.read_rows]
     kept = start | {name: value for name, value in oil.items() if name in flat.index}
     return Run(
-        study.campaign.number(test),
+        study.campaign.numbers[test],
         c.oil[test],
         join_phases(phases),
         kept,
@@ -121,7 +121,7 @@ def _hold(scenario: Scenario, flat: FlatModel) -> Run:
 
 def _parse_tests(tests: str | None, study: Measured) -> set[int]:
     """Numbers in a text such as "1,13,22-26"."""
-    known = {study.campaign.number(test) for test in range(study.campaign.n_tests)}
+    known = set(study.campaign.numbers)
     if tests is None:
         return known
     wanted: set[int] = set()

@@ -15,6 +15,7 @@ from ...model.machines.roles import takes_power
 from ...model.run.result import Outside, Result
 from ...model.run.steady import steady as solve
 from ...model.units import from_si, show_unit, text
+from ...scenarios.duty import other_torque
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.console import note
@@ -248,8 +249,7 @@ def far_from(
     """
     found = {}
     for path, value in now.items():
-        end, _, key = path.rpartition(".")
-        base = usual.get(path) or usual.get(f"{end}.{'load' if key == 'tau' else 'tau'}", 0.0) * (key != "w")
+        base = usual.get(path) or usual.get(other_torque(path), 0.0)
         if base and units[path] in ("rad/s", "N.m") and (times := abs(value / base)) > FAR:
             shown = text(value, units[path]), text(base, units[path])
             found[path] = f"{path} = {shown[0]} is {times:.3g} times that of {where}, {shown[1]}"

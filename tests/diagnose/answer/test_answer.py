@@ -334,7 +334,7 @@ def test_the_first_test_is_told_by_its_name_in_the_file(clean: tuple[Setting, Fo
     named = replace(campaign, names=tuple(f"{200 + k}" for k in range(campaign.n_tests)))
     assert estimate.first_test(campaign, 0.0) == "test 1"
     assert estimate.first_test(named, 0.0) == "test 200"
-    assert named.number(3) == 203
+    assert named.numbers[3] == 203
 
 
 def test_all_room_probes_are_checked_in_one_experiment(clean: tuple[Setting, Found]) -> None:

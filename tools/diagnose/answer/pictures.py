@@ -37,7 +37,7 @@ def rows(found: Found, h: Hypothesis) -> Rows:
         )
     return Rows(
         row=tuple(int(line) - 1 for line in c.lines),
-        test=tuple(c.number(int(t)) for t in c.test),
+        test=tuple(c.numbers[t] for t in c.test),
         direction=tuple(int(d) for d in c.direction),
         channels=told,
         quantities=quantities(c, o.sensors),

@@ -46,12 +46,12 @@ def _observed(found: Found, points: Campaign) -> Observed:
     """The points as a campaign that reads all sensors of the data; causes that follow readings take the nominal's."""
     data = found.problem.data
     order = data.campaign.order  # points stand from 0 at its first test to 1 at its last, and there if not told
-    place = np.clip((points.order - order.min()) / max(np.ptp(order), 1.0), 0.0, 1.0)[points.test]
+    place = (points.order - order.min()) / max(np.ptp(order), 1.0) if points.ordered else np.ones(points.n_tests)
     guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in data.read}
     filled = replace(points, sensors=(*points.given, *data.read), values={**points.values, **guess})
     for _ in range(2):
         o = data.another(filled)
-        o.features[0] = place if points.ordered else 1.0
+        o.features[0] = np.clip(place, 0.0, 1.0)[points.test]
         rows = zip(data.read, _predicted(found.problem, found.null, o), strict=True)
         known = {s.name: np.where(np.isfinite(row), row, guess[s.name]) for s, row in rows}
         filled = replace(filled, values={**filled.values, **known})

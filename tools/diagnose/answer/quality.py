@@ -186,7 +186,7 @@ def list_repeats(found: Found) -> tuple[RepeatedPoint, ...]:
             sums, apart = unit * group.total[name], unit * group.difference[name] * (1.0 if both else np.nan)
             if np.isfinite(sums).sum() < 2:  # cells of this sensor are empty
                 continue
-            numbers = [campaign.number(k) for k in group.tests]
+            numbers = [campaign.numbers[k] for k in group.tests]
             each = zip(group.tests, numbers, array(sums), array(apart), strict=True)
             told.append(
                 RepeatedPoint(

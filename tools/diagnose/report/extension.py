@@ -233,8 +233,8 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> tuple[str, tuple[
         filled = {path: value for path, value in own.items() if path in known}
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
 
-    spreads = [(e.cause, e.of.formula.cause.doc, e.of.formula.form) for e in h.extras if e.cause and e.of.formula]
-    scattered = [Applied(cause, doc, Form(form.name, spread=form.spread or "test"), {}) for cause, doc, form in spreads]
+    spreads = [f for e in h.extras if (f := e.of.formula)]
+    scattered = [Applied(f.cause.id, f.cause.doc, Form(f.form.name, spread=f.form.spread), {}) for f in spreads]
 
     def at(x: np.ndarray) -> Extended:
         z, acting = Vector(found.problem, h.fit.look).split(x)

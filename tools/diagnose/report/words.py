@@ -276,8 +276,9 @@ def _sure(findings: Findings) -> str:
             " of the card are too wide, or part of the effect is taken for noise."
         )
     else:
-        off = [f", but for {name_all(odd)}" for odd in [_inadequate(findings)] if odd]
-        said.append(f"What is left looks like noise ({phrases.p_value(test.p_adequacy)}){''.join(off)}.")
+        odd = _inadequate(findings)
+        but = f", but for {name_all(odd)}" if odd else ""
+        said.append(f"What is left looks like noise ({phrases.p_value(test.p_adequacy)}){but}.")
     return " ".join(said)
 
 
