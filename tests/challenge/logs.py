@@ -72,6 +72,7 @@ class Logged(Machine):
         self.logs = [Log(stretches, (True,) if first else (False, True), step, parts)]
         if self.referenced:
             self.logs.insert(0, Log((self._stretch(rng, duration, step, wander),), (False,), step, parts))
+        self.asked = slice(-sum(self.logs[-1].samples), None)
         changed = [np.full(n, c) for log in self.logs for n, c in zip(log.samples, log.changed, strict=True)]
         #: Samples of all logs from which on something may be wrong.
         self.ill = np.concatenate(changed)

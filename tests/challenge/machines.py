@@ -113,6 +113,8 @@ class Machine:
     """A true machine on its bench."""
 
     curved = CURVED
+    #: Readings of which an answer says by how much they have changed.
+    asked = slice(None)
 
     def __init__(self, path: Path, rng: np.random.Generator) -> None:
         self.tell(path)
@@ -367,7 +369,7 @@ def make(
         "answer": sorted(classes_of(f.cause for f in faults)),
         "effects": [{"cause": f.cause, "snr": round(e, 2)} for f, e in zip(faults, effects, strict=True)],
         "rival": {"distance": round(near[0], 2), "cause": near[1]} if near else None,
-        "impact": dict(zip(change, (shown - machine.sound)[:, thermal].mean(axis=0).tolist(), strict=True)),
+        "impact": dict(zip(change, (shown - machine.sound)[machine.asked, thermal].mean(axis=0).tolist(), strict=True)),
         "repeat_sd": dict(zip(change, sd[thermal].tolist(), strict=True)),
         "points": [],
         "rig": {"name": str(case / "machine.toml"), "plate": plate},

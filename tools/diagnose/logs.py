@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ...scenarios.measured.logs import Log, read_log
 from ...scenarios.measured.table import Sensor
 from .answer import channels, compose, findings as f
 from .answer.decide import Decision, decide, temper
+from .answer.estimate import impacts_of
 from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
@@ -155,10 +157,10 @@ def composed(
     if decision.verdict != "consistent" and not inputs.request.quick:
         held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         findings = findings.model_copy(update={"gain": held})
-    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0].read)
+    rows, drawn, off, changes = _pictures(known, asked, decision, spans, logs.logs[0].read)
     quality = findings.data_quality.model_copy(update={"as_filed": {} if logs.healthy else off})
-    findings = findings.model_copy(update={"rows": rows, "pictures": drawn, "data_quality": quality})
-    return replace(told, findings=with_words(findings))
+    update = {"rows": rows, "pictures": drawn, "data_quality": quality} | _impacts(told, logs.logs[0].read, changes)
+    return replace(told, findings=with_words(findings.model_copy(update=update)))
 
 
 def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, data: Logs) -> f.Findings:
@@ -271,8 +273,11 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 
 def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
-) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
-    """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
+) -> tuple[Rows, tuple[Picture, ...], dict[str, float], dict[str, np.ndarray]]:
+    """The windows as rows, the machine's past before those in question, a picture a cause, and means.
+
+    The means are of the errors as filed, and of the change (reads,) by each cause of the leader.
+    """
     own, level = known.filter, asked.curves.base
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
@@ -286,7 +291,7 @@ def _pictures(
         return np.asarray(np.concatenate([healthy, part])[by_time].T)
 
     healthy, before = (left(data, np.zeros((len(data.time), len(level)))) for data in (past, now))
-    causes = decision.leader.causes
+    causes = decision.leader.fit.causes
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
     measured = np.concatenate([means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
@@ -305,4 +310,14 @@ def _pictures(
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     errors = [(s, float(e)) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")]
     off = {s.name: error for s, error in errors if is_apart(error, s.offset_sd)}
-    return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off
+    changes = {cause: np.nanmean(before - e, axis=0) for cause, e in after.items()}
+    rows = Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time})
+    return rows, tuple(found), off, changes
+
+
+def _impacts(told: LogDiagnosis, read: Sequence[Sensor], changes: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """What the causes of the leader change (reads,), each and all together, as fields of the findings."""
+    problem, leader = told.found.problem, told.decision.leader
+    each = {c: impacts_of(problem, leader, read, {c: changed}) for c, changed in changes.items()}
+    causes = (c.model_copy(update={"impact": each.get(c.id, {})}) for c in told.findings.causes)
+    return {"causes": tuple(causes), "impact": impacts_of(problem, leader, read, changes)}

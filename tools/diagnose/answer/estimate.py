@@ -201,6 +201,24 @@ def impacts(
     return told
 
 
+def impacts_of(
+    problem: Problem, h: Hypothesis, read: Sequence[Sensor], changes: Mapping[str, np.ndarray]
+) -> dict[str, findings.Impact]:
+    """Mean change of each sensor by causes of a hypothesis, from that by each (sensors,), in proportion to its size."""
+    if not changes:
+        return {}
+    x, covariance = posterior(problem, h)
+    own = np.array(Vector(problem, h.fit.look).sizes)[[h.fit.causes.index(c) for c in changes]]
+    slopes = np.array(list(changes.values())) / x[own, None]
+    sds = np.sqrt(np.einsum("ij,ik,kj->j", slopes, covariance[np.ix_(own, own)], slopes))
+    told = {}
+    for s, change, sd in zip(read, x[own] @ slopes, sds, strict=True):
+        value, half = channels.difference(s, change), WIDE * channels.difference(s, sd)
+        ends, unit = (value - half, value + half), channels.unit_of_difference(s)
+        told[channels.change_name(s)] = findings.Impact(value=value, ci95=ends, unit=unit, what=channels.words(s))
+    return told
+
+
 def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray] | None:
     """Weights of the readings (m,) in the mean loss torque [N.m] and in the mean loss [W]; None without a torque.
 
