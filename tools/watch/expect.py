@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..diagnose.infer.levels import at_duty, open_at
 from ..diagnose.infer.logs import Fleet
 from ..diagnose.model.windows import Windows, means
 
@@ -31,11 +32,12 @@ def expect(known: Fleet, window: Windows) -> Expected:
     """
     own, levels = known.filter, known.levels
     sd = np.array([k.sd for k in own.knobs])
-    z = known.curves.back(levels.mean[0] + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
+    duty = known.duty.at(window)
+    z = known.curves.back(at_duty(duty, levels.mean[[0]]) + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
     shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, free=True, slopes=False).shown
     read = np.where(window.counts[0, :, None], window.read[0], np.nan)
     mean = means(np.where(np.isfinite(read), shown, np.nan))
     by = ((mean[1:] - mean[0]) / sd[:, None]).T
-    spread = by @ (levels.covariance[0] + levels.season + levels.window) @ by.T
+    spread = by @ (open_at(duty, (levels.covariance[0] + levels.season)[None])[0] + levels.window) @ by.T
     alone = np.maximum(known.share * np.isfinite(read).sum(axis=0), 1.0)
     return Expected(means(read[None])[0], mean[0], np.sqrt(np.diag(spread) + own.scatter**2 / alone))

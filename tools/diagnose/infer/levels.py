@@ -17,10 +17,12 @@ from ..model.logs import Quadratics
 SEASON = 0.25
 #: As shares of that of machines.
 WINDOW = 0.25
+#: Of slopes by a feature of the duty, as a share of that of machines.
+SLOPE = float(__import__("os").environ.get("SLOPE", ".15"))
 #: How many deviations this expectation counts for.
 COUNTS = 2.0
 #: Least share of the covariance of seasons by which a season differs from itself at another time.
-SAME = 1e-6
+SAME = float(__import__("os").environ.get("SAME", "1e-6"))
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
 
@@ -54,35 +56,48 @@ class Levels:
         return replace(self, mean=mean, covariance=covariance, season=max(share, SAME) * self.season)
 
 
-def first_levels(sd: np.ndarray, machines: int) -> Levels:
-    """Levels before any data, by the standard deviations of the knobs between machines (k,) and their number."""
-    machine = np.diag(sd**2)
-    root, mean = 1.5**2 * machine, np.zeros((machines, len(sd)))
+def first_levels(sd: np.ndarray, slopes: np.ndarray, machines: int) -> Levels:
+    """Levels before any data, by the standard deviations of the knobs between machines (k,) and numbers of both."""
+    window, machine = np.diag(sd**2), np.diag(np.r_[sd, slopes] ** 2)
+    root, mean = 1.5**2 * machine, np.zeros((machines, len(machine)))
     C = np.tile(root + machine, (machines, 1, 1))
-    return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * machine, COUNTS, mean, C, mean[:0], C[:0])
+    return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * window, COUNTS, mean, C, mean[:0], C[:0])
 
 
-def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
+def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:
+    """Knobs (n, k) at duties (n, 1 + d), from their values and slopes (n, k + k d)."""
+    return np.asarray(np.einsum("na,nai->ni", duty, mean.reshape(*duty.shape, -1)))
+
+
+def open_at(duty: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Covariances of knobs (n, k, k) at duties, from those of their values and slopes."""
+    n, f = duty.shape
+    k = covariance.shape[1] // f
+    return np.asarray(np.einsum("na,naibj,nb->nij", duty, covariance.reshape(n, f, k, f, k), duty, optimize=True))
+
+
+def estimate(found: Quadratics, duty: np.ndarray, season: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
     """Covariances of seasons and windows, and the knobs of machines, from healthy logs.
 
     Seasons of all machines share one covariance: knobs that move together in some of them may do so in any other.
 
     Args:
         found: of the windows (n)
+        duty: of them (n, 1 + d)
         season: number of each window's season of a machine (n,)
         machine_of: machine of each season of a machine
         begun: levels to begin with; its expectations count as data
     """
-    levels, machines, k = begun, len(begun.mean), found.H.shape[1]
+    levels, machines, k = begun, len(begun.mean), len(begun.root)
     type_of = np.zeros(machines, dtype=int)
     for _ in range(ROUNDS):
-        windows = found.spread(levels.window).summed(season, len(machine_of))
+        windows = found.spread(levels.window).by_duty(duty).summed(season, len(machine_of))
         seasons = windows.spread(levels.season).summed(machine_of, machines)
         types = seasons.spread(levels.machine).summed(type_of, 1)
         m, C, _ = _down(types, levels.root, np.zeros((1, k)), np.zeros((1, k, k)))
         z, Cz, _ = _down(seasons, levels.machine, m[type_of], C[type_of])
         zy, Cy, moved = _down(windows, levels.season, z[machine_of], Cz[machine_of])
-        _, _, wandered = _down(found, levels.window, zy[season], Cy[season])
+        _, _, wandered = _down(found, levels.window, at_duty(duty, zy[season]), open_at(duty, Cy[season]))
         n = len(machine_of)
         levels = replace(
             levels,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
@@ -19,10 +20,10 @@ from ..model.entries import Term
 from ..model.logged import Logged
 from ..model.logs import Filter, Quadratics, log_likelihood
 from ..model.plant import Plant
-from ..model.windows import WINDOW, Windows, windows
-from .levels import Levels, estimate, first_levels
+from ..model.windows import WINDOW, Duty, Windows, windows
+from .levels import Levels, at_duty, estimate, first_levels
 from .problem import Look, Problem
-from .walk import PASSES, curves, independent, suit, walk
+from .walk import PASSES, curves, independent, loosen, suit, walk
 from .weigh import Progress
 
 #: State noise [K] of one sample of bodies that no sensor reads.
@@ -58,6 +59,7 @@ class Fleet:
         length: samples of a window that count
         at: knobs of the machines at which they say it (machines, k)
         curves: of its knobs
+        duty: what is usual
         seasons: machine and number of a season -> number of that one in the levels, its middle time [s]
     """
 
@@ -68,6 +70,7 @@ class Fleet:
     length: int
     at: np.ndarray
     curves: Curves
+    duty: Duty
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
 
     def of(self, machine: int) -> Fleet:
@@ -150,24 +153,32 @@ def fleet(
     own = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
     sd = np.array([k.sd for k in own.knobs])
-    begun = first_levels(sd, 1 + len(siblings))
+    past = windows(logs or [all_sensors], own.given, own.read, length)
+    duty = Duty.of(past, all_sensors.given, all_sensors.read)
+    import os
+    SLOPE,KELVIN=float(os.environ.get("SLOPE",".15")),float(os.environ.get("KELVIN",".8"))
+    reads=[s.name for s in all_sensors.read]
+    each=np.array([KELVIN if k.sensor in reads and k.unit=="K" else SLOPE*k.sd for k in own.knobs])
+    begun = first_levels(sd, np.tile(each, len(duty.usual)), 1 + len(siblings))
     if not logs:
-        empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, empty, begun, 0.0, length, begun.mean, Curves({}, 0 * sd))
-    past = windows(logs, own.given, own.read, length)
+        return Fleet(
+            own, past.some(np.zeros(0, dtype=int)), begun, 0.0, length, np.zeros((1, len(sd))), Curves({}, 0 * sd), duty
+        )
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
     suit(own, past, np.zeros((len(machine), len(sd))))
     own.learns = True
-    at, passed = walk(own, past, machine, (begun.mean[0], begun.covariance[0]), _pass(progress, "healthy logs"))
+    expected = np.zeros(len(sd)), begun.covariance[0, : len(sd), : len(sd)]
+    at, passed = walk(own, past, machine, expected, _pass(progress, "healthy logs"))
     share = independent(passed)
     bent = curves(own, past)
-    levels = estimate(passed.told(*bent.at(at[machine])).times(share), season, machine_of, begun)
+    told = passed.told(*bent.at(at[machine])).times(share)
+    levels = estimate(told, duty.at(past), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, past.some(machine == 0), levels, share, length, at, bent, seasons)
+    return Fleet(own, past.some(machine == 0), levels, share, length, at, bent, duty, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,20 +202,24 @@ class Question:
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
     """Run the logs in question at the machine's knobs, then where each season has moved to; progress as of `fleet`."""
-    own, levels = found.filter, found.levels
+    own, levels = copy(found.filter), found.levels
+    k = len(own.knobs)
     data = windows(logs, own.given, own.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
         suit(own, data, np.zeros((len(season), len(own.knobs))))
-    span, sd = _spans(data.time, season), np.array([k.sd for k in own.knobs])
-    wide = levels.covariance[0] + levels.season + np.diag(sd**2)
-    step, own.learns = _pass(progress, "logs in question"), not found.share
+    span = _spans(data.time, season)
+    moved = levels.season[:k, :k] + np.diag([k.sd**2 if k.cause else 0.0 for k in own.knobs])
+    wide = levels.covariance[0, :k, :k] + moved
+    step, own.learns, healthy = _pass(progress, "logs in question"), True, np.tile(found.at[0], (len(season), 1))
+    if found.share:
+        own.least = own.scatter
+        loosen(own, data, healthy)
     z, passed = walk(own, data, season, (found.at[0], wide), step)
-    nearer = walk(own, data, span, (found.at[0], levels.season + levels.window), step, found.share)
-    at = z[season]
+    nearer = walk(own, data, span, (found.at[0], moved + levels.window), step, found.share)
+    at, passed = z[season], own.run(data, z[season])
     if found.share:  # what is not told apart moves along with a change: the filter stays unless the change is large
-        healthy = np.tile(found.at[0], (len(season), 1))
         still = own.run(data, healthy)
         if log_likelihood(passed) - log_likelihood(still) < LARGE * data.counts.sum():
             at, passed = healthy, still
@@ -212,8 +227,9 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
         at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
     bent = found.curves if found.share else curves(own, data)
     told = passed.told(*bent.at(at)).times(found.share or independent(passed))
-    moves = replace(told, eta=told.eta - told.H @ levels.mean[0])
-    return Question(data, season, span, moves, bent.about(levels.mean[0]))
+    usual = at_duty(found.duty.at(data), levels.mean[[0] * len(season)])
+    moves = replace(told, eta=told.eta - (told.H @ usual[:, :, None])[:, :, 0])
+    return Question(data, season, span, moves, bent.about(levels.mean[0, :k]))
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
@@ -235,14 +251,15 @@ class LogProblem(Problem):
     Args:
         data: the spans
         season: number of the season of each
+        root: how the knobs of each differ between healthy seasons, for independent normal numbers (n, k, r)
         levels: of healthy machines
     """
 
-    def __init__(self, data: Logged, season: np.ndarray, levels: Levels) -> None:
+    def __init__(self, data: Logged, season: np.ndarray, root: np.ndarray, levels: Levels) -> None:
         super().__init__([data], 0.0)
         self.spans, self.ends = data, np.zeros(data.m, dtype=bool)
         self.alike, self.same = np.ones((data.m, data.m)), np.eye(data.m)  # each entry is a channel of its own
-        root = data.by @ np.linalg.cholesky(levels.season)
+        root = data.felt(root, data.row)
         own = (season[:, None] == np.unique(season))[data.row]
         self.seasons = (root[:, :, None] * own[:, None, :]).reshape(data.m, -1)
         #: Of the logarithm of a standard deviation that is known to so many degrees of freedom.
@@ -268,6 +285,12 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     date = tuple(f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d}" if dated else "" for t in time)
     values = {s.name: np.zeros(n) for s in logs[0].sensors}
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
-    root = np.linalg.cholesky(found.levels.covariance[0])
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    return LogProblem(Logged(own.plant, campaign, own.knobs, told, root, asked.curves), season, found.levels)
+    duty = found.duty.at(data)
+    duty = np.array([duty[asked.span == k].mean(axis=0) for k in range(n)])
+    roots = [
+        np.kron(duty, np.eye(len(own.knobs))).reshape(n, len(own.knobs), -1) @ np.linalg.cholesky(C)
+        for C in (found.levels.covariance[0], found.levels.season)
+    ]
+    spans = Logged(own.plant, campaign, own.knobs, told, roots[0], asked.curves)
+    return LogProblem(spans, season, roots[1], found.levels)

@@ -24,8 +24,6 @@ LITTLE = 1.0
 DAMPINGS = (0.0, 1.0, 10.0, 100.0, 1000.0)
 #: Passes at first that take every move: what switches makes logs less likely before it makes them likelier.
 FREE = 4
-#: Scatter of readings at least, as a share of what the card says.
-LEAST = 0.3
 #: Steps of a sample at most.
 PARTS = 8
 #: Twice as many change what is foreseen by so little of its errors.
@@ -103,6 +101,14 @@ def walk(
     return z, own.run(data, z[group])
 
 
+def loosen(own: Filter, data: Windows, z: np.ndarray) -> None:
+    """Let the scatter be as large as errors are where the knobs have not moved: far ones would not count at all."""
+    for _ in range(PASSES):
+        before, own.scatter = own.scatter, _scatter(own, own.run(data, z, slopes=False))
+        if np.allclose(before, own.scatter, rtol=NEAR):
+            break
+
+
 def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
     """Fit the filter to windows: the steps of a sample, and whether they hold what was read at moments."""
     some = np.linspace(0, len(z) - 1, min(len(z), TIMED)).astype(int)
@@ -130,7 +136,7 @@ def _scatter(own: Filter, passed: Passed) -> np.ndarray:
     """Scatter of the readings that makes the prediction errors as large as they are."""
     usual = np.nanmedian(passed.error**2 / passed.variance, axis=(0, 1)) / 0.455
     found = own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5
-    return np.maximum(found, LEAST * own.read_sd)
+    return np.maximum(found, own.least)
 
 
 def independent(passed: Passed) -> float:

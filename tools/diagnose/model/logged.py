@@ -31,7 +31,7 @@ class Logged(Observed):
         campaign: a row for each span, a test each
         knobs: what may differ
         told: what each span says of what moves of its knobs do
-        root: columns by which the machine's knobs differ from its values, for independent normal numbers (k, k)
+        root: how each span's knobs differ from the machine's values, for independent normal numbers (n, k, r)
         curves: moves of knobs -> what they do
     """
 
@@ -44,21 +44,28 @@ class Logged(Observed):
         root: np.ndarray,
         curves: Curves,
     ) -> None:
-        names = [*(knob.name for knob in knobs), "day"]
-        super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in names], {}, {})
-        self.place, self.root, self.curves = {name: k for k, name in enumerate(names)}, root, curves
+        names = [knob.name for knob in knobs]
+        differing = [*(f"{k}" for k in range(root.shape[2])), "day"]
+        super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in differing], {}, {})
+        self.place, self.curves = {name: k for k, name in enumerate(names)}, curves
         sd = np.array([k.sd for k in knobs])
         own = [_told(eta, H, sd) for eta, H in zip(told.eta, told.H, strict=True)]
         #: Slopes of the entries by the knobs in their spans (m, k).
         self.by = np.concatenate([B for _, B in own])
         row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in own])
+        #: The same by what the machine's knobs differ by (m, r).
+        self.tilt = self.felt(root, row)
         measured = np.concatenate([y for y, _ in own])
         none, ones = np.zeros(len(row), dtype=int), np.ones(len(row))
         self._hold(Entries(none - 1, none, row, row, measured, ones, row, none, ones))
 
+    def felt(self, root: np.ndarray, row: np.ndarray) -> np.ndarray:
+        """What columns of each span's knobs (n, k, r) do to entries in rows (m, r)."""
+        return np.asarray(np.einsum("mk,mkr->mr", self.by, root[row]))
+
     def moves(self, parts: Parts) -> np.ndarray:
         """How far causes move the knobs in each span (n, k)."""
-        found = np.zeros((self.campaign.n, len(self.root)))
+        found = np.zeros((self.campaign.n, self.by.shape[1]))
         for formula, t in parts:
             value, _, _ = formula.physics(t, {}, self.sensors, self.features)
             for name, moved in zip(formula.paths, value, strict=False):
@@ -68,7 +75,7 @@ class Logged(Observed):
     def at(self, z: np.ndarray, parts: Parts) -> Seen:
         """The entries and their derivatives; as for any campaign."""
         does, slope = self.curves.at(self.moves(parts))
-        by = [self.by @ self.root, np.zeros((self.m, 1))]
+        by = [self.tilt, np.zeros((self.m, 1))]
         for formula, t in parts:
             _, by_t, _ = formula.physics(t, {}, self.sensors, self.features)
             ways = [
@@ -76,7 +83,7 @@ class Logged(Observed):
                 for name, way in zip(formula.paths, by_t, strict=False)
             ]
             by.append(np.sum(ways, axis=0))
-        shown = (self.by * (self.root @ z[:-1] + does)[self.row]).sum(axis=1)
+        shown = self.tilt @ z[:-1] + (self.by * does[self.row]).sum(axis=1)
         return Seen(shown, np.concatenate(by, axis=1), np.zeros((self.m, len(self.given), self.height)))
 
     def tangents(self, z: np.ndarray, parts: Parts, candidates: Parts) -> np.ndarray:

@@ -26,6 +26,8 @@ TAILS = 4.0
 UNREAD = 6.0
 #: Scatter of a reading about the model before it is estimated, in repeatabilities.
 SCATTER = 3.0
+#: The least it is.
+LEAST = 0.3
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
@@ -49,6 +51,12 @@ class Quadratics:
         both = np.linalg.solve(A, np.concatenate([self.H, self.eta[:, :, None]], axis=2))
         H = both[:, :, :-1]
         return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
+
+    def by_duty(self, duty: np.ndarray) -> Quadratics:
+        """The same of what the knobs follow: their values, and their slopes by each feature of `Windows.duty` (n, 1 + d)."""
+        n, m = duty.shape[0], duty.shape[1] * self.eta.shape[1]
+        H = np.einsum("na,nb,nij->naibj", duty, duty, self.H)
+        return Quadratics((duty[:, :, None] * self.eta[:, None, :]).reshape(n, m), H.reshape(n, m, m))
 
     def times(self, share: float) -> Quadratics:
         """The same from a share of the samples."""
@@ -110,6 +118,8 @@ class Filter:
         self.given_sd, self.read_sd = (np.array([s.repeat_sd for s in sensors]) for sensors in (given, read))
         #: Scatter of each reading about the model (reads,).
         self.scatter = SCATTER * self.read_sd
+        #: The least it may be (reads,).
+        self.least = LEAST * self.read_sd
         #: Whether it is to be fitted to logs.
         self.learns = False
         #: Whether what logs hold was read at moments, and is no mean over a sample.

@@ -6,11 +6,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from scipy.signal import lfilter
 
 from ....scenarios.measured.logs import Log
+from ....scenarios.measured.table import Sensor
 
 #: Samples of a window that count.
 WINDOW = 250
+#: Time in which what warms slowly follows [s].
+HOURS = 5 * 3600.0
+#: Temperature by which a duty is another one [K].
+WARMER = 10.0
 #: Samples before them in which the filter settles.
 SETTLING = 60
 
@@ -22,6 +28,7 @@ class Windows:
     Args:
         given: inputs as logged, with the model's sign (N, L, given)
         read: readings (N, L, reads), NaN where missing
+        slow: means of the readings until then, of the last hours above all (N, L, reads)
         there: whether a sample is there (N, L)
         counts: whether it counts, the settling ones do not (N, L)
         machine: number of the log of each window (N,)
@@ -34,6 +41,7 @@ class Windows:
     read: np.ndarray
     there: np.ndarray
     counts: np.ndarray
+    slow: np.ndarray
     machine: np.ndarray
     time: np.ndarray
     rows: np.ndarray
@@ -52,6 +60,39 @@ class Windows:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class Duty:
+    """What losses and heat paths may follow otherwise than their laws say: speeds, loads and a temperature.
+
+    Args:
+        loads: numbers of the inputs
+        warm: number of the reading
+        usual: means of each, the temperature last (d,)
+    """
+
+    loads: Sequence[int]
+    warm: int
+    usual: np.ndarray
+
+    @classmethod
+    def of(cls, data: Windows, given: Sequence[Sensor], read: Sequence[Sensor]) -> Duty:
+        """That of windows of logs with some sensors."""
+        loads = [i for i, s in enumerate(given) if s.kind != "ambient"]
+        warm = next((i for i, s in enumerate(read) if s.kind.endswith("_temp")), 0)
+        own = cls(loads, warm, np.zeros(len(loads) + 2))
+        return replace(own, usual=np.nanmean(own._means(data), axis=0))
+
+    def _means(self, data: Windows) -> np.ndarray:
+        warm = data.read[:, :, [self.warm]]
+        own = np.concatenate([np.abs(data.given[:, :, self.loads]), warm, warm - data.slow[:, :, [self.warm]]], axis=2)
+        return means(np.where(data.counts[:, :, None], own, np.nan))
+
+    def at(self, data: Windows) -> np.ndarray:
+        """One, and how far means of windows lie from the usual ones, of loads by half of these (N, 1 + d)."""
+        far = (self._means(data) - self.usual) / np.r_[self.usual[:-2] / 2, WARMER, WARMER]
+        return np.column_stack([np.ones(len(far)), np.where(np.isfinite(far), far, 0.0)])
+
+
 def windows(
     logs: Sequence[Log], given: Sequence[str], read: Sequence[str], length: int = WINDOW, settling: int = SETTLING
 ) -> Windows:
@@ -65,19 +106,21 @@ def windows(
     pieces = [(i, log, *piece) for i, log in enumerate(logs) for piece in _pieces(log.stretch, length, settling)]
     n, longest = len(pieces), max(len(rows) for _, _, rows, _ in pieces)
     u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
+    slow, courses = y.copy(), [{name: _slow(log, name) for name in read if name in log.values} for log in logs]
     counts, there = np.zeros((n, longest), dtype=bool), np.zeros((n, longest), dtype=bool)
     at = np.full((n, longest), -1)
-    for i, (_, log, rows, skipped) in enumerate(pieces):
+    for i, (number, log, rows, skipped) in enumerate(pieces):
         m = len(rows)
         signs = {s.name: s.signs[0] for s in log.sensors}
         u[i, :m] = np.array([_held(log.values[name][rows]) * signs[name] for name in given]).T
         for j, name in enumerate(read):
             if name in log.values:
                 y[i, :m, j] = log.values[name][rows] * signs[name]
+                slow[i, :m, j] = courses[number][name][rows] * signs[name]
         there[i, :m], counts[i, skipped:m], at[i, :m] = True, True, rows
     machine = np.array([number for number, *_ in pieces])
     time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in pieces])
-    return Windows(u, y, there, counts, machine, time, at, logs[0].step)
+    return Windows(u, y, there, counts, slow, machine, time, at, logs[0].step)
 
 
 def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[np.ndarray, int]]:
@@ -91,6 +134,15 @@ def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[n
             begin = max(part[0] - settling, rows[0])
             settled = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
             yield np.arange(begin, part[-1] + 1), settled
+
+
+def _slow(log: Log, name: str) -> np.ndarray:
+    """Means of a reading until each sample, of the last hours above all, of each stretch by itself (n,)."""
+    found, share = _held(log.values[name]), 1 - np.exp(-log.step / HOURS)
+    for rows in (np.flatnonzero(log.stretch == number) for number in np.unique(log.stretch)):
+        begin = np.array([(1 - share) * found[rows[0]]])
+        found[rows] = lfilter([share], [1.0, share - 1], found[rows], zi=begin)[0]
+    return found
 
 
 def _held(column: np.ndarray) -> np.ndarray:
