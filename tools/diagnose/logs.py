@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ from .infer.weigh import Options, Progress, weigh
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
-from .model.windows import Windows, means
+from .model.windows import Windows, means, windows
 from .report.words import with_words
 from .request import Inputs
 from .setting import Setting
@@ -157,9 +157,9 @@ def composed(
     if decision.verdict != "consistent" and not inputs.request.quick:
         held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         findings = findings.model_copy(update={"gain": held})
-    rows, drawn, off, changes = _pictures(known, asked, decision, spans, logs.logs[0].read)
+    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0].read)
     quality = findings.data_quality.model_copy(update={"as_filed": {} if logs.healthy else off})
-    update = {"rows": rows, "pictures": drawn, "data_quality": quality} | _impacts(told, logs.logs[0].read, changes)
+    update = {"rows": rows, "pictures": drawn, "data_quality": quality} | _impacts(known, asked, told, logs.logs)
     return replace(told, findings=with_words(findings.model_copy(update=update)))
 
 
@@ -183,7 +183,7 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         test=f.Alarm(
             alpha=inputs.request.alpha,
             p_any=decision.p_any,
-            p_adequacy=min(decision.p_adequacy, QUIET),
+            p_adequacy=None if np.isnan(decision.p_adequacy) else min(decision.p_adequacy, QUIET),
             draws=len(found.drawn),
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
@@ -273,11 +273,8 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 
 def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
-) -> tuple[Rows, tuple[Picture, ...], dict[str, float], dict[str, np.ndarray]]:
-    """The windows as rows, the machine's past before those in question, a picture a cause, and means.
-
-    The means are of the errors as filed, and of the change (reads,) by each cause of the leader.
-    """
+) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
+    """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
     own, level = known.filter, asked.curves.base
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
@@ -291,7 +288,7 @@ def _pictures(
         return np.asarray(np.concatenate([healthy, part])[by_time].T)
 
     healthy, before = (left(data, np.zeros((len(data.time), len(level)))) for data in (past, now))
-    causes = decision.leader.fit.causes
+    causes = decision.leader.causes
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
     measured = np.concatenate([means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
@@ -310,14 +307,27 @@ def _pictures(
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     errors = [(s, float(e)) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")]
     off = {s.name: error for s, error in errors if is_apart(error, s.offset_sd)}
-    changes = {cause: np.nanmean(before - e, axis=0) for cause, e in after.items()}
-    rows = Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time})
-    return rows, tuple(found), off, changes
+    return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off
 
 
-def _impacts(told: LogDiagnosis, read: Sequence[Sensor], changes: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    """What the causes of the leader change (reads,), each and all together, as fields of the findings."""
-    problem, leader = told.found.problem, told.decision.leader
-    each = {c: impacts_of(problem, leader, read, {c: changed}) for c, changed in changes.items()}
+def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[Log]) -> dict[str, Any]:
+    """What the causes of the leader change, each and all together, as fields of the findings: means of free runs.
+
+    Whole stretches are run, with the largest move of each cause, and count by how far it has moved on average.
+    """
+    own, leader, read, changes = known.filter, told.decision.leader, logs[0].read, {}
+    whole = windows(logs, own.given, own.read, 0)
+
+    def shown(moves: np.ndarray) -> np.ndarray:
+        z = np.tile(asked.curves.base + moves, (len(whole.time), 1))
+        return own.run(whole, z, free=True, slopes=False).shown
+
+    sound = shown(np.zeros(len(own.knobs))) if leader.fit.causes else np.zeros(0)
+    for cause in leader.fit.causes:
+        moves = _moves(told.spans, leader, cause)
+        far = np.abs(moves).sum(axis=1)
+        share = far[asked.span].mean() / far.max()
+        changes[cause] = share * np.nanmean(shown(moves[far.argmax()]) - sound, axis=(0, 1))
+    each = {c: impacts_of(told.found.problem, leader, read, {c: changed}) for c, changed in changes.items()}
     causes = (c.model_copy(update={"impact": each.get(c.id, {})}) for c in told.findings.causes)
-    return {"causes": tuple(causes), "impact": impacts_of(problem, leader, read, changes)}
+    return {"causes": tuple(causes), "impact": impacts_of(told.found.problem, leader, read, changes)}

@@ -156,9 +156,10 @@ def fleet(
     past = windows(logs or [all_sensors], own.given, own.read, length)
     duty = Duty.of(past, all_sensors.given, all_sensors.read)
     import os
-    SLOPE,KELVIN=float(os.environ.get("SLOPE",".15")),float(os.environ.get("KELVIN",".8"))
-    reads=[s.name for s in all_sensors.read]
-    each=np.array([KELVIN if k.sensor in reads and k.unit=="K" else SLOPE*k.sd for k in own.knobs])
+
+    SLOPE, KELVIN = float(os.environ.get("SLOPE", ".15")), float(os.environ.get("KELVIN", ".8"))
+    reads = [s.name for s in all_sensors.read]
+    each = np.array([KELVIN if k.sensor in reads and k.unit == "K" else SLOPE * k.sd for k in own.knobs])
     begun = first_levels(sd, np.tile(each, len(duty.usual)), 1 + len(siblings))
     if not logs:
         return Fleet(

@@ -79,9 +79,9 @@ def _cause(own: Sequence[Knob]) -> Cause:
     most = FARTHEST * first.usual
     forms = [_moved(knob, when, name, when.share / len(own)) for knob in own for when in WHENS]
     size = Size(name, first.unit, doc, first.usual, -most, most)
-    kind = KINDS.get(first.cause.split(".")[1])
-    exposes = TABLE.get(first.cause, {}).get("exposes") or (kind.calibrate if kind else "")
-    return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time", exposes=exposes)
+    kind, said = KINDS.get(first.cause.split(".")[1]), TABLE.get(first.cause, {})
+    exposes, like = said.get("exposes") or (kind.calibrate if kind else ""), TABLE["classes"].get(said.get("like"), "")
+    return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time", exposes=exposes, like=like)
 
 
 def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
