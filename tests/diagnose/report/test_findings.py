@@ -34,7 +34,7 @@ def test_fields_of_version_1_are_there_with_their_meaning() -> None:
     found = as_object(explained())
     assert found["schema"] == "gearheat.diagnosis/2"
     assert {"verdict", "test", "hypotheses", "causes", "confusable", "impact", "gain", "next_experiment"} <= set(found)
-    assert {"alpha", "p_any", "p_omnibus", "p_adequacy", "null", "draws"} == set(found["test"])
+    assert {"alpha", "p_any", "p_omnibus", "p_adequacy", "draws"} == set(found["test"])
     assert found["hypotheses"][0] == {"causes": ["losses.churning"], "probability": 0.96, "mc_error": 0.012}
     assert found["causes"][0]["parameters"][0]["ci95"] == [102.0, 132.0]
     assert found["gain"]["before"] == {"without": 2.3, "with": 1.2}

@@ -33,7 +33,6 @@ class GrossReading(Model):
     shown: Number | None = None
     expected: Number | None = None
     unit: str = ""
-    set_aside: bool = True
     instead: tuple[str, ...] = Field(default=(), description="given channels of the row that explain it as well")
 
 
@@ -120,8 +119,6 @@ class View(Model):
 
         id: str
         probability: Probability
-        mc_error: Number = 0.0
-        parameters: tuple[Estimate, ...] = ()
 
     channel: str
     asks: str = Field(description="torque given the measured temperatures; oil thermometer against the others")

@@ -63,7 +63,6 @@ class Alarm(Model):
         default=None, description="p of the readings under the calibrated model, no cause in mind"
     )
     p_adequacy: P | None = Field(description="p of what the top hypothesis leaves; near 1 is too good to be true")
-    null: Literal["bootstrap", "analytic"] = "bootstrap"
     draws: int | None = None
 
 
@@ -151,7 +150,6 @@ class Gain(Model):
         with_: Number = Field(alias="with")
 
     scheme: str = Field(description="leave-one-operating-point, -speed, -load or -oil; leave-out-tests or -spans")
-    nested: bool = True
     channel: str
     unit: str = "K"
     n: int

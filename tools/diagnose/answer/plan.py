@@ -58,11 +58,10 @@ class Outlook(Model):
 
 
 class Planned(Model):
-    """An experiment that was considered: `tests` hold its inputs, `checks` the instruments it checks."""
+    """An experiment that was considered; `checks` are the instruments it checks."""
 
     id: str
     what: str
-    tests: tuple[dict[str, Number], ...] = ()
     checks: tuple[str, ...] = ()
 
 

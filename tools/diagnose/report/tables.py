@@ -112,7 +112,7 @@ def causes(findings: Findings) -> list[Table]:
         together.append((percent(further), f"{len(joint) - len(together)} further ones together"))
     by_channel = []
     for v in findings.views:
-        leading = ", ".join(f"{name_of(s.id)} {percent(s.probability, s.mc_error)}" for s in v.causes[:NAMED])
+        leading = ", ".join(f"{name_of(s.id)} {percent(s.probability)}" for s in v.causes[:NAMED])
         by_channel.append((v.channel, v.asks, p_value(v.p), percent(v.nothing), leading))
     return [
         Table("Causes", ("probability", "cause", "size (95 %)", "where", "id"), ranked),
