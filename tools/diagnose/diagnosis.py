@@ -110,7 +110,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             alpha=request.alpha,
             p_any=decision.p_any,
             p_omnibus=found.p_omnibus,
-            p_adequacy=None if np.isnan(decision.p_adequacy) else decision.p_adequacy,
+            p_adequacy=decision.p_adequacy,
             draws=len(found.drawn),
         ),
         data_quality=check_data(found, leader),

@@ -183,7 +183,7 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
         test=f.Alarm(
             alpha=inputs.request.alpha,
             p_any=decision.p_any,
-            p_adequacy=None if np.isnan(decision.p_adequacy) else min(decision.p_adequacy, QUIET),
+            p_adequacy=None if decision.p_adequacy is None else min(decision.p_adequacy, QUIET),
             draws=len(found.drawn),
         ),
         data_quality=DataQuality(gross=tuple(_gross(logs))),

@@ -151,7 +151,7 @@ def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
     assert not decision.answers
     assert 0.05 < decision.p_any <= clean[1].p_any
     assert decision.leader.causes == ()
-    assert 0.001 < decision.p_adequacy < 0.999
+    assert decision.p_adequacy is not None and 0.001 < decision.p_adequacy < 0.999
 
 
 @pytest.mark.parametrize("name", ["wrong", "clean"])
@@ -326,7 +326,7 @@ def test_points_without_a_running_order_stand_behind_the_campaign(wrong: tuple[S
 
 def test_nothing_is_said_of_what_is_left_where_nothing_is_free(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    assert np.isnan(p_adequacy(found, found.hypotheses[0], np.array([0])))
+    assert p_adequacy(found, found.hypotheses[0], np.array([0])) is None
 
 
 def test_the_first_test_is_told_by_its_name_in_the_file(clean: tuple[Setting, Found]) -> None:

@@ -103,6 +103,13 @@ def test_a_single_reading_that_many_bodies_move(tmp_path: Path) -> None:
     assert gh.diagnose(None, "actuator", logs=now, reference_logs=past, quick=True).verdict == "consistent"
 
 
+def test_a_log_of_few_samples_leaves_nothing_free(tmp_path: Path) -> None:
+    path = record(tmp_path / "now.csv", load("helical_two_stage"), 1)
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:9]))
+    found = gh.diagnose(None, "helical_two_stage", logs=path, quick=True)
+    assert found.verdict == "consistent" and found.test.p_adequacy is None
+
+
 @pytest.mark.filterwarnings("error")
 def test_thermometers_that_end(tmp_path: Path) -> None:
     """The last window has none."""

@@ -72,7 +72,7 @@ class Decision:
         members: cause -> hypotheses that hold it, with their probabilities, most probable first
         leader: the hypothesis that stands for the answer: without a cause where the verdict is "consistent"
         p_any: share of campaigns without a fault whose odds against nothing are as large
-        p_adequacy: of what the leader leaves
+        p_adequacy: of what the leader leaves; None where nothing is left free
     """
 
     verdict: Verdict
@@ -82,7 +82,7 @@ class Decision:
     members: Mapping[str, tuple[Member, ...]]
     leader: Hypothesis
     p_any: float
-    p_adequacy: float
+    p_adequacy: float | None
 
 
 def decide(found: Found) -> Decision:
@@ -211,8 +211,8 @@ def _class(cause: str, best: Hypothesis, members: Sequence[Member], found: Found
     return (cause, *others)
 
 
-def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -> float:
-    """Chi-square p of what a hypothesis leaves in some readings (k,), all if None; NaN where nothing is left free.
+def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -> float | None:
+    """Chi-square p of what a hypothesis leaves in some readings (k,), all if None; None where nothing is left free.
 
     Whatever its scatter leaves free takes a degree of freedom.
     """
@@ -228,4 +228,4 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
     e = white(r[kept])
     e = e - Q[:, fitted] @ (Q[:, fitted].T @ e)
     free = len(e) - int(fitted.sum())
-    return float(chdtrc(free, e @ e)) if free > 0 else np.nan
+    return float(chdtrc(free, e @ e)) if free > 0 else None

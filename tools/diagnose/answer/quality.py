@@ -154,7 +154,7 @@ def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     """Compared sensor -> p of what a hypothesis leaves in it, where it leaves something free."""
     own = channels.compared(found.problem.data)
     told = {s.name: p_adequacy(found, h, np.flatnonzero(mine)) for _, s, mine in own}
-    return {name: p for name, p in told.items() if not np.isnan(p)}
+    return {name: p for name, p in told.items() if p is not None}
 
 
 def errors_as_filed(problem: Problem) -> dict[str, float]:
