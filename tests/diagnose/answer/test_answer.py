@@ -259,7 +259,8 @@ def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting,
 
 def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Setting, Found]) -> None:
     problem, look = clean[1].problem, clean[1].null.look
-    alone = {t.name: t.matrix for t in terms(problem.campaigns, look.seen, problem.day_sd, look.sd)}
+    noise = problem.noise(look)
+    alone = {t.name: noise.scaled([t]) for t in terms(problem.campaigns, look.seen, problem.day_sd, look.sd)}
     campaign = problem.data.campaign
     speed = next(s.name for s in campaign.given if s.kind == "speed")
     fast = replace(campaign, values={**campaign.values, speed: 1.2 * campaign.values[speed]})
@@ -268,7 +269,7 @@ def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Set
     joint = terms([*problem.campaigns, points], [*look.seen, seen], problem.day_sd, look.sd, points=1)
     assert [t.name for t in joint] == list(alone)
     for term in joint:
-        np.testing.assert_allclose(term.matrix[: problem.m, : problem.m], alone[term.name], atol=1e-12)
+        np.testing.assert_allclose(noise.scaled([term])[: problem.m, : problem.m], alone[term.name], atol=1e-12)
 
 
 def designed(found: Found, setting: Setting) -> Design:

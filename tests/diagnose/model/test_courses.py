@@ -17,7 +17,6 @@ from gearheat.tools.diagnose.infer.problem import Problem
 from gearheat.tools.diagnose.infer.screen import screened
 from gearheat.tools.diagnose.model import march
 from gearheat.tools.diagnose.model.formula import Formula, Parts
-from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.setting import Setting, setting
 from made_tables import made, written
@@ -140,7 +139,8 @@ def test_courses_keep_their_own_clock(prepared) -> None:
 def test_all_terms_of_courses_are_covariances(prepared) -> None:
     problem = Problem([observed(prepared, logged(prepared.problem.data.campaign)) for _ in range(2)], 0.015)
     look = problem.look(np.zeros(problem.nz))
-    found = {term.name: term.matrix for term in terms(problem.campaigns, look.seen, 0.015, look.sd)}
+    noise = problem.noise(look)
+    found = {t.name: noise.scaled([t]) for t in noise.terms}
     assert {"courses", "model of courses", "starts", "dwells as logged", "remainder"} <= found.keys()
     for matrix in found.values():
         assert np.abs(matrix - matrix.T).max() < 1e-12 and np.linalg.eigvalsh(matrix).min() > -1e-8

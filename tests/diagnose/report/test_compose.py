@@ -90,7 +90,7 @@ def test_the_extended_rig_says_how_uncertain_the_data_leave_it(made: Made, tmp_p
     """Every parameter by the posterior: of a factor its logarithm's, of the cause its size's, whatever goes with it."""
     (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h)[0])
     rig = load(path)
-    sd, problem = np.sqrt(np.diag(posterior(made.found.problem, made.h)[1])), made.found.problem
+    sd, problem = np.sqrt(np.diag(posterior(made.found.problem, made.h.fit))), made.found.problem
     (acting,) = made.h.fit.look.acting
     told = rig.standard_uncertainties
     assert told["found_churning.P_ref"] == pytest.approx(acting.formula.cause.size.sd * sd[problem.nz], rel=1e-2)

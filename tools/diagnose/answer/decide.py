@@ -216,11 +216,11 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
 
     Whatever its scatter leaves free takes a degree of freedom.
     """
-    problem, fit = found.problem, h.fit
+    problem, fit, noise = found.problem, h.fit, h.fit.noise
     kept = np.setdiff1d(np.arange(problem.m) if entries is None else entries, problem.entries_aside)
-    fixed = [t for t in fit.noise.terms if t.loose == 0 and t.columns is not None]
-    V = fit.noise.covariance - sum((t.matrix for t in fixed), np.zeros((problem.m, problem.m)))
-    known = np.concatenate([fit.look.by_sd, *(t.columns for t in fixed if t.columns is not None)], axis=1)
+    fixed = [t.columns for t in noise.terms if t.loose == 0 and t.columns is not None]
+    V = noise.scaled([t for t in noise.terms if t.loose > 0 or t.columns is None])
+    known = np.concatenate([fit.look.by_sd, *fixed], axis=1)
     r = problem.measured - fit.look.shown + fit.look.jacobian @ fit.look.x
     white = White.of(V[np.ix_(kept, kept)])
     Q, d, _ = np.linalg.svd(white(known[kept]), full_matrices=False)

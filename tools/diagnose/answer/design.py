@@ -136,10 +136,9 @@ def simulate_design(
     checks = [(e.id, check) for e in experiments for check in e.checks]
     campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
     seen = [*look.seen, *(s for _, s, _ in runs.values())]
-    scales = {t.name: s for t, s in zip(noise.loose, noise.scales, strict=True)}
     joint = terms(campaigns, seen, problem.day_sd, look.sd, points=len(runs))
     J = np.concatenate([look.jacobian, *(s.by[:, : problem.nz] for _, s, _ in runs.values())])
-    V = J @ J.T + sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint)
+    V = J @ J.T + noise.scaled(joint)
     known = {t.name: t.columns[:, 0] for t in joint if t.columns is not None and t.name.startswith("tolerance of ")}
     sensors = {s.name: s.offset_sd for s in problem.data.campaign.sensors}
     V = _with_checks(V, known, [check for _, check in checks], sensors)

@@ -33,26 +33,23 @@ COUNTS = 0.01
 SPREADS = np.geomspace(0.1, 32.0, 33)
 
 
-def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
-    """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
-    fit, J = h.fit, h.fit.look.jacobian
-    x, vector, G = fit.look.x, Vector(problem, fit.look), White.of(fit.noise.covariance)(J)
+def posterior(problem: Problem, fit: Fit) -> np.ndarray:
+    """Covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
+    vector, G = Vector(problem, fit.look), White.of(fit.noise.covariance)(fit.look.jacobian)
     covariance = np.linalg.inv(G.T @ G + np.diag(vector.precision))
-    covariance[vector.sizes, vector.sizes] += (fit.form * x[vector.sizes]) ** 2
-    return x, covariance
+    covariance[vector.sizes, vector.sizes] += (fit.form * fit.look.x[vector.sizes]) ** 2
+    return covariance
 
 
-def _of_cause(problem: Problem, h: Hypothesis, cause: str) -> tuple[np.ndarray, np.ndarray]:
-    """The part of the posterior that is of a cause and what follows it: its size, its shapes."""
-    begin = Vector(problem, h.fit.look).sizes[h.fit.causes.index(cause)]
-    x, covariance = posterior(problem, h)
-    return x[begin:], covariance[begin:, begin:]
+def _of_cause(problem: Problem, fit: Fit, cause: str) -> tuple[np.ndarray, np.ndarray]:
+    """The vector and its covariance from a cause on: its size, its shapes, and what follows."""
+    begin = Vector(problem, fit.look).sizes[fit.causes.index(cause)]
+    return fit.look.x[begin:], posterior(problem, fit)[begin:, begin:]
 
 
 def loose_variance(fit: Fit) -> np.ndarray:
     """Variances (M,) by the scatter of readings, inputs and days as found, without tolerances."""
-    loose = zip(fit.noise.scales, fit.noise.loose, strict=True)
-    return np.asarray(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))
+    return np.diag(fit.noise.scaled(fit.noise.loose))
 
 
 def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
@@ -63,7 +60,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
         return _spread(found, cause, members)
     best = max(acting, key=lambda member: member[1])[0]
     alike = [(h, p) for h, p in acting if h.form(cause) == best.form(cause)]
-    sizes = [(x[0], covariance[0, 0]) for x, covariance in (_of_cause(found.problem, h, cause) for h, _ in alike)]
+    sizes = [(x[0], covariance[0, 0]) for x, covariance in (_of_cause(found.problem, h.fit, cause) for h, _ in alike)]
     weights = [p for _, p in alike]
     w, (m, variances) = np.array(weights) / sum(weights), np.transpose(sizes)
     centre = float(w @ m)
@@ -71,7 +68,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     one = best.fit.look.acting[best.fit.causes.index(cause)]
     s = one.formula.extent
     ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
-    return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best, one))
+    return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best.fit, one))
 
 
 def _told(of: Shape | Size, ends: Sequence[float], scale: float = 1.0) -> Estimate:
@@ -81,9 +78,9 @@ def _told(of: Shape | Size, ends: Sequence[float], scale: float = 1.0) -> Estima
     return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)
 
 
-def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
+def _shapes(problem: Problem, fit: Fit, one: Acting) -> list[Estimate]:
     """The shapes of a cause in a hypothesis."""
-    x, covariance = _of_cause(problem, h, one.id)
+    x, covariance = _of_cause(problem, fit, one.id)
     found = []
     for k, shape in enumerate(one.formula.form.shapes, start=1):
         sd = min(float(np.sqrt(covariance[k, k])), 1.0)
@@ -180,7 +177,7 @@ def impacts(
     change = (fit.look.shown - problem.shown(fit.look, without))[problem.own]
     spans = zip(Vector(problem, fit.look).sizes, fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
-    covariance, jacobian = posterior(problem, h)[1][np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
+    covariance, jacobian = posterior(problem, fit)[np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
     run, told = np.isfinite(change), dict[str, findings.Impact]()  # without the cause the machine may run away
 
     def add(name: str, weights: np.ndarray, unit: str, what: str) -> None:

@@ -66,9 +66,8 @@ def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:
     if not good.any():
         return table
     joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, fit.look.sd, points=1)
-    scales = {t.name: s for t, s in zip(fit.noise.loose, fit.noise.scales, strict=True)}
     known = {t.name for t in fit.noise.terms}
-    V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint if t.name in known)
+    V = fit.noise.scaled([t for t in joint if t.name in known])
     told = V[problem.m :, : problem.m] @ White.of(fit.noise.covariance).back(problem.measured - fit.look.shown)
     table[o.kind[good], o.row[good]] = (seen.shown + np.nan_to_num(told))[good]
     return table

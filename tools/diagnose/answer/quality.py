@@ -144,7 +144,7 @@ def scatters(found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
 def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
     """Standard deviations of the logarithms of the scales, by the information of the data and of the prior."""
     noise, inverse = h.fit.noise, h.fit.linear(found.problem)[0].inverse
-    weighted = [inverse @ t.matrix * np.exp(2 * s) for s, t in zip(noise.scales, noise.loose, strict=True)]
+    weighted = [inverse @ noise.scaled([t]) for t in noise.loose]
     information = np.array([2 * float((W * W.T).sum()) for W in weighted])
     prior = np.array([t.loose for t in noise.loose])
     return np.asarray(1 / np.sqrt(information + prior**-2))

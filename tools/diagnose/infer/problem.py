@@ -121,20 +121,22 @@ class Noise:
     @cached_property
     def covariance(self) -> np.ndarray:
         """The whole (M, M)."""
-        return summed(self.terms, self._all_scales, self.terms[0].m)
+        return self.scaled(self.terms)
+
+    def scaled(self, terms: Sequence[Term]) -> np.ndarray:
+        """Covariance (m, m) of some terms, or of those of more campaigns, with the scales of their names."""
+        return summed(terms, self._scales_of(terms), terms[0].m)
 
     @property
     def passing(self) -> np.ndarray:
         """What of the rows is another in each test or mounting, with the columns as they are (M, M)."""
-        own = zip(self.terms, np.exp(2 * self._all_scales), strict=True)
+        own = zip(self.terms, np.exp(2 * self._scales_of(self.terms)), strict=True)
         parts = (v * t.passing @ t.effects.T for t, v in own if t.passing is not None)
         return sum(parts, np.zeros((self.terms[0].m,) * 2))
 
-    @property
-    def _all_scales(self) -> np.ndarray:
-        scales = np.zeros(len(self.terms))
-        scales[[t.loose > 0 for t in self.terms]] = self.scales
-        return scales
+    def _scales_of(self, terms: Sequence[Term]) -> np.ndarray:
+        known = {t.name: scale for t, scale in zip(self.loose, self.scales, strict=True)}
+        return np.array([known.get(t.name, 0.0) for t in terms])
 
     @property
     def log_prior(self) -> float:

@@ -114,16 +114,6 @@ class Term:
         return len(next(part for part in (self.columns, self.variance, self.covariance) if part is not None))
 
     @property
-    def matrix(self) -> np.ndarray:
-        """The covariance it stands for (m, m)."""
-        if self.covariance is not None:
-            return self.covariance
-        if self.variance is not None:
-            return np.diag(self.variance)
-        assert self.columns is not None
-        return np.asarray(self.columns @ self.columns.T)
-
-    @property
     def rank(self) -> int:
         """Number of its `effects`."""
         return int((self.variance > 0).sum()) if self.variance is not None else self.effects.shape[1]

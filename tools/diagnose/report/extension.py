@@ -244,7 +244,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> tuple[str, tuple[
         return extended(scenario, told, [*causes, *scattered], data.name, len(oils), added)
 
     x = h.fit.look.x
-    uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])
+    uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h.fit))
     rig = at(x)
     return rig.text(uncertain), rig.cut
 
