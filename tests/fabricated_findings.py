@@ -141,11 +141,13 @@ def explained(**given: Any) -> Findings:
             "heat_W": Impact(value=118.0, ci95=(100, 131), unit="W", what="heat"),
         },
         "gain": Gain(
-            scheme="leave-one-operating-point", channel="T_oil", n=24, rmse_before=2.3, rmse_after=0.6,
+            scheme="leave-one-operating-point", channel="T_oil", unit="K", n=24, rmse_before=2.3, rmse_after=0.6,
             before=Gain.Both(without=2.3, with_=1.2), after=Gain.Both(without=0.6, with_=0.55), ratio_ci90=(0.2, 0.35),
             noise_floor=0.4, rivals={"constant cooling": 2.2, "linear in speed and load": 1.1},
         ),
-        "gain_grouped": (Gain(scheme="leave-one-speed", channel="T_oil", n=24, rmse_before=2.5, rmse_after=0.8),),
+        "gain_grouped": (
+            Gain(scheme="leave-one-speed", channel="T_oil", unit="K", n=24, rmse_before=2.5, rmse_after=0.8),
+        ),
         "played": {"T_oil": Played(rms_calibrated=2.2, rms_extended=0.5, unit="K")},
         "next_experiment": (
             Experiment(id="level", what="the same points with half the oil", separates=(CHURNING, WINDAGE),

@@ -26,7 +26,7 @@ from .infer.weigh import Options, Progress, weigh
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
-from .model.windows import Windows, means, windows
+from .model.windows import Windows, means, of_readings, windows
 from .report.words import with_words
 from .request import Inputs
 from .setting import Setting
@@ -235,11 +235,9 @@ def _gross(logs: Sequence[Log]) -> list[GrossReading]:
     ]
 
 
-def _gain(
-    known: Fleet, asked: Question, found: Found, spans: Logged, progress: Callable[[float], None]
-) -> f.Gain | None:
+def _gain(known: Fleet, asked: Question, found: Found, spans: Logged, progress: Callable[[float], None]) -> f.Gain:
     """Free-running error of spans of the logs, with the causes that are found without them."""
-    own, data = known.filter, asked.windows
+    own, data, read = known.filter, asked.windows, spans.read
     before = np.tile(asked.curves.base, (len(data.read), 1))
     after, chosen = before.copy(), Counter[str]()
     for k in range(FOLDS):
@@ -250,13 +248,17 @@ def _gain(
         held = np.isin(asked.span, rows)
         after[held] += _moves(spans, kept)[asked.span[held]]
         progress((k + 1) / FOLDS)
-    errors = [own.run(data, z, free=True, slopes=False).error[:, :, 0] for z in (before, after)]
-    old, new = (float(np.sqrt(np.nanmean(e**2))) for e in errors)
+    errors = [own.run(data, z, free=True, slopes=False).error for z in (before, after)]
+    counted = np.isfinite(errors[0]).sum(axis=(0, 1))
+    j = min(np.flatnonzero(counted), key=lambda k: read[k].kind != "oil_temp")  # of the oil, where it is read
+    s = read[j]
+    old, new = (channels.difference(s, float(np.sqrt(np.nanmean(e[:, :, j] ** 2)))) for e in errors)
     sides = [f.Gain.Both.model_validate({"without": e, "with": e}) for e in (old, new)]
     return f.Gain(
         scheme="leave-out-spans",
-        channel=own.read[0],
-        n=int(np.isfinite(errors[0]).sum()),
+        channel=s.name,
+        unit=channels.unit_of_difference(s),
+        n=int(counted[j]),
         rmse_before=old,
         rmse_after=new,
         before=sides[0],
@@ -301,12 +303,13 @@ def _pictures(
     time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(days))
     found = []
     for cause, e in after.items():
-        share = np.nansum(before**2 - e**2, axis=0) / np.nansum(before**2 + own.read_sd**2, axis=0)
+        whole_of = np.maximum(np.nansum(before**2 + own.read_sd**2, axis=0), own.read_sd**2)
+        share = np.nansum(before**2 - e**2, axis=0) / whole_of
         best = int(np.argmax(share))  # where most of what is more than noise is taken away
         sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
-    errors = [(s, float(e)) for s, e in zip(read, np.nanmean(before, axis=0), strict=True) if s.kind.endswith("_temp")]
-    off = {s.name: error for s, error in errors if is_apart(error, s.offset_sd)}
+    errors = zip(read, of_readings(np.mean, before).tolist(), strict=True)
+    off = {s.name: e for s, e in errors if s.kind.endswith("_temp") and is_apart(e, s.offset_sd)}
     return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off
 
 

@@ -126,6 +126,16 @@ def test_thermometers_that_end(tmp_path: Path) -> None:
     assert told.count("window") == 2 and "alarm" not in told
 
 
+def test_what_is_not_read_has_no_error(tmp_path: Path) -> None:
+    scenario = load("helical_two_stage")
+    log = read(record(tmp_path / "log.csv", scenario, 1), scenario)
+    log.values["T_oil"][::3] = np.nan
+    own = filter_of(scenario, log)
+    data = windows([log], own.given, own.read)
+    passed = own.run(data, np.zeros((len(data.time), len(own.knobs))), slopes=False)
+    np.testing.assert_array_equal(np.isfinite(passed.error), data.counts[:, :, None] & np.isfinite(data.read))
+
+
 @pytest.mark.filterwarnings("error")
 def test_errors_that_are_always_the_same_have_a_share() -> None:
     error = np.full((2, 36, 1), 50.0)

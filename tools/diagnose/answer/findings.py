@@ -151,7 +151,7 @@ class Gain(Model):
 
     scheme: str = Field(description="leave-one-operating-point, -speed, -load or -oil; leave-out-tests or -spans")
     channel: str
-    unit: str = "K"
+    unit: str
     n: int
     rmse_before: Number = Field(description="by what lasts: the same as before.without")
     rmse_after: Number = Field(description="the same as after.without")

@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..model.curves import FLATTEST, SEEN, Curves
 from ..model.logs import Filter, Passed, log_likelihood
-from ..model.windows import Windows
+from ..model.windows import Windows, of_readings
 
 #: Passes over logs at most.
 PASSES = 30
@@ -120,8 +120,8 @@ def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
     found = passed(False, 1)
     while own.parts < PARTS:
         finer = passed(False, 2 * own.parts)
-        scale = np.nanmedian(np.abs(finer.error), axis=(0, 1))
-        if (np.sqrt(np.nanmean((finer.shown - found.shown) ** 2, axis=(0, 1))) <= NEAR * scale).all():
+        scale = of_readings(np.median, np.abs(finer.error))
+        if not (np.sqrt(np.nanmean((finer.shown - found.shown) ** 2, axis=(0, 1))) > NEAR * scale).any():
             own.parts //= 2
             break
         found = finer
@@ -134,7 +134,7 @@ def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
 
 def _scatter(own: Filter, passed: Passed) -> np.ndarray:
     """Scatter of the readings that makes the prediction errors as large as they are."""
-    usual = np.nanmedian(passed.error**2 / passed.variance, axis=(0, 1)) / 0.455
+    usual = of_readings(np.median, passed.error**2 / passed.variance) / 0.455
     found = own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5
     return np.maximum(found, own.least)
 
@@ -142,12 +142,13 @@ def _scatter(own: Filter, passed: Passed) -> np.ndarray:
 def independent(passed: Passed) -> float:
     """Share of the samples that count as independent: one over the sum of the errors' correlations in time."""
     e = np.clip(passed.error / np.sqrt(passed.variance), -3.0, 3.0)
-    e = e - np.nanmean(e, axis=(0, 1))
-    own = np.nanmean(e**2, axis=(0, 1)) + 1e-12
+    e = e - of_readings(np.mean, e)
+    own = of_readings(np.mean, e**2) + 1e-12
     most = int(np.isfinite(e).any(axis=2).sum(axis=1).max())  # samples that count in the longest window
     shares = []
-    for j in range(e.shape[2]):
-        lags = [float(np.nanmean(e[:, k:, j] * e[:, :-k, j]) / own[j]) for k in range(1, min(MEMORY, most - 1))]
+    for j in np.flatnonzero(np.isfinite(own)):
+        pairs = (e[:, k:, j] * e[:, :-k, j] for k in range(1, min(MEMORY, most - 1)))
+        lags = [float(np.nansum(both) / max(np.isfinite(both).sum(), 1) / own[j]) for both in pairs]
         first = next((k for k, rho in enumerate(lags) if rho < CORRELATED), len(lags))
         shares.append(1 / (1 + 2 * sum(lags[:first])))
     return float(np.mean(shares))

@@ -76,7 +76,7 @@ class Passed:
 
     Args:
         slope, curvature: of the log likelihood, by the knobs (N, k), (N, k, k), the latter positive
-        error: prediction errors (N, L, reads), NaN where nothing counts
+        error: prediction errors (N, L, reads), NaN where nothing is read or counts
         variance: of them (N, L, reads)
         shown: what the model shows (N, L, reads)
     """
@@ -247,7 +247,7 @@ class Filter:
             share_rows(followed, last - first, SIDE, 0)
             if progress:
                 progress(float(lengths[:last].sum() / lengths.sum()))
-        found["error"][~data.counts | ~np.isfinite(data.read).any(axis=2)] = np.nan
+        found["error"][~(data.counts[:, :, None] & np.isfinite(data.read))] = np.nan
         back, ends = np.argsort(order), slice(1, None, 2) if self.moments else slice(None)
         return Passed(**{name: a[back, ends] if name in ROWS else a[back] for name, a in found.items()})
 

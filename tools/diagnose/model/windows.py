@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -157,3 +157,9 @@ def means(values: np.ndarray) -> np.ndarray:
     """Means of windows (n, L, reads) over their samples (n, reads), NaN where a reading has none."""
     count = np.isfinite(values).sum(axis=1)
     return np.asarray(np.nansum(values, axis=1) / np.where(count > 0, count, np.nan))
+
+
+def of_readings(statistic: Callable[[np.ndarray], float], values: np.ndarray) -> np.ndarray:
+    """A statistic of all values of each reading (..., reads), NaN where it has none."""
+    known = (column[np.isfinite(column)] for column in values.reshape(-1, values.shape[-1]).T)
+    return np.array([statistic(column) if len(column) else np.nan for column in known])
