@@ -21,6 +21,8 @@ from ..show.endings import fitting
 
 #: What is written by options of a diagnosis.
 WRITTEN = {"--json": "JSON", "--report": "a page", "--extended": "a rig file", "--predictions": "a table"}
+#: The least rate of false alarms that draws of noise can tell.
+LEAST = 0.001
 #: Causes that may be looked for together.
 MOST = 8
 #: What the user should know of a series that has nothing to be compared with.
@@ -61,12 +63,12 @@ class Request:
 
     def problems(self) -> list[str]:
         """What is wrong with the options."""
-        alpha = f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.01."
+        alpha = f"--alpha {self.alpha:g} is no rate of false alarms. Give one from {LEAST:g} to below 1, such as 0.01."
         causes = f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}."
         lost = "needs the readings of the same tests."
         checks = (
             (self.data or self.logs, "no data are given. Name a table of readings, or logs with --logs FILE."),
-            (0.0 < self.alpha < 1.0, alpha),
+            (LEAST <= self.alpha < 1.0, alpha),
             (1 <= self.causes <= MOST, causes),
             (self.seed >= 0, f"--seed {self.seed} is below zero. Give 0 or more."),
             (self.data or not self.predict, "--predict needs a table of readings beside the logs. Give DATA, too."),

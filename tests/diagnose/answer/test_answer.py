@@ -325,6 +325,13 @@ def test_points_without_a_running_order_stand_behind_the_campaign(wrong: tuple[S
     assert np.array_equal(simulate(found, replace(campaign, ordered=False)), simulate(found, last), equal_nan=True)
 
 
+def test_what_is_a_little_more_likely_than_nothing_is_an_alarm(clean: tuple[Setting, Found]) -> None:
+    found = clean[1]
+    none = np.array([not h.causes and not h.extras for h in found.hypotheses])
+    p = np.where(none, 0.4999 / none.sum(), 0.5001 / (~none).sum())
+    assert decide(replace(found, probabilities=p)).p_any < Options().alpha
+
+
 def test_nothing_is_said_of_what_is_left_where_nothing_is_free(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
     assert p_adequacy(found, found.hypotheses[0], np.array([0])) is None

@@ -82,10 +82,10 @@ def test_all_problems_at_once(tmp_path: Path) -> None:
     page = tmp_path / "page"
     outputs = Outputs(page, str(tmp_path / "nowhere" / "o.json"), page, card)
     with pytest.raises(DataError) as caught:
-        options = {"reference": tmp_path / "none.csv", "causes": 0, "alpha": 1.5, "seed": -1}
+        options = {"reference": tmp_path / "none.csv", "causes": 0, "alpha": 1e-4, "seed": -1}
         diagnose_command(DATA, outputs, infer, card=card, **options)
     told = "\n".join(caught.value.problems)
-    words = ("--alpha 1.5", "--causes 0", "--seed -1", "--reference", "there is no such file", "day_cooling_sd")
+    words = ("--alpha 0.0001", "--causes 0", "--seed -1", "--reference", "there is no such file", "day_cooling_sd")
     words += ("--predictions needs the points", "nowhere", "is the file of --card", "is the file of --predictions")
     for word in words:
         assert word in told, word

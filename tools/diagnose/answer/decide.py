@@ -172,6 +172,8 @@ class _Chances:
         self.p_any, least = ((1 + int((found.drawn >= x).sum())) / (1 + n) for x in (odds, found.critical))
         if self.nothing >= 0.5:  # odds lack causes that promise nothing, which are not fitted: p of the first look
             self.p_any = max(min(self.p_any, found.p_any), least)
+        else:  # the critical value lies between two draws
+            self.p_any = min(self.p_any, least - 1 / (1 + n))
         share = float((found.drawn > found.critical).mean())
         spread = np.sqrt(max(share * (1 - share), 1 / n) / n)
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))
