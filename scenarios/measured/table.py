@@ -217,5 +217,8 @@ class Campaign(Sensed):
     @property
     def progress(self) -> np.ndarray:
         """Running order of each row from 0 (first test) to 1 (last)."""
-        span = max(float(self.order.max() - self.order.min()), 1.0)
-        return np.asarray((self.order - self.order.min())[self.test] / span)
+        return np.asarray(self.places(self.order)[self.test])
+
+    def places(self, order: np.ndarray) -> np.ndarray:
+        """The same of running orders (k,); those of its first test where all its tests have the same."""
+        return np.asarray((order - self.order.min()) / (np.ptp(self.order) or 1.0))

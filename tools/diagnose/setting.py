@@ -135,7 +135,7 @@ def ranges_of(
     whole |= {"order": campaign.progress, "direction": campaign.direction}
     low, mid, high = ({name: float(np.quantile(v[fine], q)) for name, v in whole.items()} for q in (0.05, 0.5, 0.95))
     loss = float(np.median(np.abs(np.sum(power, axis=0)[fine])))
-    facts = {"order": campaign.n_tests > 1, "mounting": len(set(campaign.mounting)) > 1}
+    facts = {"order": np.ptp(campaign.order) > 0, "mounting": len(set(campaign.mounting)) > 1}
     facts |= {"dwell": np.isfinite(campaign.dwell).any(), "humidity": np.isfinite(campaign.humidity).any()}
     facts |= {f"still: {s.name}": campaign.still(s) for s in campaign.read}
     known = frozenset(name for name, holds in facts.items() if holds)

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.model.errors import SolveError
+from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, p_adequacy, temper
@@ -22,7 +23,7 @@ from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.report import extension, phrases
-from gearheat.tools.diagnose.setting import Setting
+from gearheat.tools.diagnose.setting import Setting, setting
 
 TRUE = "sensor.oil_temp.offset"
 #: What may be wrong, and by how much the oil thermometer is, as the fixtures have it [K].
@@ -330,6 +331,13 @@ def test_what_is_a_little_more_likely_than_nothing_is_an_alarm(clean: tuple[Sett
     none = np.array([not h.causes and not h.extras for h in found.hypotheses])
     p = np.where(none, 0.4999 / none.sum(), 0.5001 / (~none).sum())
     assert decide(replace(found, probabilities=p)).p_any < Options().alpha
+
+
+def test_fractions_are_a_running_order_and_one_for_all_is_none(clean: tuple[Setting, Found]) -> None:
+    scenario, campaign = clean[0].scenario, clean[1].problem.data.campaign
+    np.testing.assert_allclose(replace(campaign, order=campaign.order / 100).progress, campaign.progress)
+    made = setting(scenario, Card(), replace(campaign, order=np.ones(campaign.n_tests)))
+    assert not {"procedure.order", "sensor.oil_temp.drift"} & {cause.id for cause in made.causes}
 
 
 def test_nothing_is_said_of_what_is_left_where_nothing_is_free(wrong: tuple[Setting, Found]) -> None:

@@ -45,8 +45,7 @@ def simulate(found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
 def _observed(found: Found, points: Campaign) -> Observed:
     """The points as a campaign that reads all sensors of the data; causes that follow readings take the nominal's."""
     data = found.problem.data
-    order = data.campaign.order  # points stand from 0 at its first test to 1 at its last, and there if not told
-    place = (points.order - order.min()) / max(np.ptp(order), 1.0) if points.ordered else np.ones(points.n_tests)
+    place = data.campaign.places(points.order) if points.ordered else np.ones(points.n_tests)  # at its end if not told
     guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in data.read}
     filled = replace(points, sensors=(*points.given, *data.read), values={**points.values, **guess})
     for _ in range(2):
