@@ -74,7 +74,8 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
 def _told(of: Shape | Size, ends: Sequence[float], scale: float = 1.0) -> Estimate:
     """A size or a shape with its interval: low end, value, high end, of what has it times a scale."""
     unit, (low, value, high) = convert(of, [scale * end for end in ends])
-    bound = at_bound(ends[1], of.low, of.high)
+    near = NEAR * (of.high - of.low)
+    bound: Bound = "low" if ends[1] <= of.low + near and of.low != 0.0 else "high" if ends[1] >= of.high - near else ""
     return Estimate(name=of.name, value=value, ci95=(low, high), unit=unit, doc=of.doc, at_bound=bound)
 
 
@@ -97,12 +98,6 @@ def convert(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[flo
     """Values of a shape in the unit people read: degC and rpm; kelvins that may be few are a difference."""
     unit = "K (difference)" if shape.unit == "K" and shape.low <= 150.0 else shape.unit
     return show_unit(unit), [from_si(v, unit) for v in values]
-
-
-def at_bound(value: float, low: float, high: float) -> Bound:
-    """The bound that a value sits on."""
-    near = NEAR * (high - low)
-    return "low" if value <= low + near and low != 0.0 else "high" if value >= high - near else ""
 
 
 def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
