@@ -87,7 +87,7 @@ class Row:
         sensors: sensor -> what it shows in this row, SI; what is missing in a row stands at the campaign's mean
         order: running order of the row's test, 0 for the first and 1 for the last
         direction: +1 or -1, 0 where the campaign has none
-        rise: oil over room as measured [K], or as modelled where it is not measured
+        rise: oil over room as measured [K], smooth in speed, load and running order; 30 K where it is not measured
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
         dwell: time the row was held as stated [s]

@@ -190,15 +190,32 @@ class Measured:
         found[:, self.row[mine]] = [v[mine] for v in values]
         return found
 
+    def conditions(self) -> np.ndarray:
+        """What drives the rows, in units of its spread: direction and given sensors but rooms (n, k)."""
+        columns = [self.sensors[s.name] for s in self.given if s.kind != "ambient"]
+        columns = [c for c in columns if np.ptp(c) > 1e-9 * max(abs(c).max(), 1e-300)]
+        own = [(c - c.mean()) / max(c.std(), 1e-12) for c in columns]
+        if np.any(self.campaign.direction != self.campaign.direction[0]):
+            own.append(self.campaign.direction)
+        return np.array(own).reshape(len(own), self.campaign.n).T
+
+    def _rise(self) -> np.ndarray:
+        """Oil over room (n,) [K], smooth in the conditions: what follows each reading would explain its scatter."""
+        c, at = self.campaign, self.conditions()
+        oil, room = (next((s.name for s in c.sensors if s.kind == kind), "") for kind in ("oil_temp", "ambient"))
+        if not (oil and room and (known := np.isfinite(c.values[oil])).any()):
+            return np.full(c.n, 30.0)
+        products = [a * b for i, a in enumerate(at.T) for b in at.T[i:]]
+        X = np.column_stack([np.ones(c.n), c.progress, np.minimum(self.half, 1), at, *products])
+        rise = (self.sensors[oil] - self.sensors[room])[known]
+        return np.asarray((X @ np.linalg.lstsq(X[known], rise, rcond=None)[0]).clip(rise.min(), rise.max()))
+
     def _features(self) -> np.ndarray:
         """Of the rows, in the order of `FEATURES`."""
         c = self.campaign
         humidity = np.nan_to_num(c.humidity, nan=0.5)[c.test]
-        oil = [s.name for s in c.sensors if s.kind == "oil_temp"]
-        room = [s.name for s in c.sensors if s.kind == "ambient"]
-        rise = self.sensors[oil[0]] - self.sensors[room[0]] if oil and room else np.full(c.n, 30.0)
         dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
-        return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
+        return np.array([c.progress, c.direction, self._rise(), humidity, np.minimum(self.half, 1), dwell])
 
 
 def _filled(values: np.ndarray) -> np.ndarray:

@@ -88,16 +88,6 @@ def walk(effect: np.ndarray, test: np.ndarray) -> np.ndarray:
     return np.asarray(effect[:, None] * (test[:, None] >= np.arange(int(test.max()) + 1)))
 
 
-def conditions(o: Measured) -> np.ndarray:
-    """What a smooth remainder depends on, in units of its spread: direction and given sensors but rooms (n, k)."""
-    columns = [o.sensors[s.name] for s in o.given if s.kind != "ambient"]
-    columns = [c for c in columns if np.ptp(c) > 1e-9 * max(abs(c).max(), 1e-300)]
-    own = [(c - c.mean()) / max(c.std(), 1e-12) for c in columns]
-    if np.any(o.campaign.direction != o.campaign.direction[0]):
-        own.append(o.campaign.direction)
-    return np.array(own).reshape(len(own), o.campaign.n).T
-
-
 def smooth_features(campaigns: Sequence[Measured], points: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
     and squares (n, k). The last `points` campaigns do not count in where they are zero and one.
@@ -140,7 +130,7 @@ def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
 
 def alike(o: Measured) -> np.ndarray:
     """Correlation (m, m) of what is smooth in the conditions and the running order, for one sensor."""
-    features = np.column_stack([conditions(o), 2.0 * o.campaign.progress])[o.row]
+    features = np.column_stack([o.conditions(), 2.0 * o.campaign.progress])[o.row]
     features = np.column_stack([features, SMOOTH / LENGTH * shares(o)]) if o.campaign.series else features
     distance = ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)
     return np.asarray(np.exp(-0.5 * distance / SMOOTH**2))
