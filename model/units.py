@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from .errors import ScenarioError
@@ -164,20 +165,21 @@ def refuse_comma(text: str, name: str) -> None:
         )
 
 
-def _without_unit(name: str, value: object, written: str, unit: str) -> str:
+def _without_unit(name: str, value: object, written: str, unit: str, usual: Sequence[str]) -> str:
     """What is said of a number without a unit: how it may have been meant."""
     target = unit.removesuffix("(difference)").strip()
-    ways = " or ".join(f'"{value} {usual}"' for usual in USUAL.get(target, (show_unit(unit),)))
+    ways = " or ".join(f'"{value} {one}"' for one in usual or USUAL.get(target, (show_unit(unit),)))
     return f"{name} = {written} has no unit. Write {ways} (expected a unit like {target})."
 
 
-def to_si(value: object, unit: str, *, name: str = "value") -> float:
+def to_si(value: object, unit: str, *, name: str = "value", usual: Sequence[str] = ()) -> float:
     """A value with its unit as a number in the SI unit `unit` of the model.
 
     Args:
         value: text such as "62 mm" or "60 degC"; a bare number only where `unit` is "1"
         unit: the model's SI unit: "m", "K", "rad/s", "1", "K (difference)", ...
         name: what to call it in a message
+        usual: units to advise where it has none, that which is likeliest first; those of `USUAL` if empty
 
     Raises:
         ScenarioError: no number, no unit, or a unit of another kind
@@ -188,7 +190,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         raise ScenarioError(f'{name} = {value!r} is no value. Write a number with its unit, like "{example(unit)}".')
     if isinstance(value, int | float):
         if target != "1":
-            raise ScenarioError(_without_unit(name, value, str(value), unit))
+            raise ScenarioError(_without_unit(name, value, str(value), unit, usual))
         return _finite(float(value), name, value)
     refuse_comma(value, name)
     try:
@@ -198,7 +200,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
             f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".'
         ) from None
     if not written and target != "1":
-        raise ScenarioError(_without_unit(name, value, f'"{value}"', unit))
+        raise ScenarioError(_without_unit(name, value, f'"{value}"', unit, usual))
     if written == target:
         return _finite(number, name, value)
     try:

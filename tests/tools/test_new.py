@@ -24,6 +24,7 @@ from gearheat.tools.build.plausible import usual
 from gearheat.tools.build.shafts import find_tight
 from gearheat.tools.solve.settings import flat_of
 from gearheat.tools.solve.simulate import simulate
+from gearheat.tools.solve.steady import steady
 
 FORCES = ("F_t", "F_r", "F_a")
 PLATES = {
@@ -104,13 +105,13 @@ def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
     answer = gearheat("new", "hot", *plate, "-o", tmp_path / "hot.toml")
     assert answer.code == 0, answer.err
     assert "needs --fan or --cooler (for 1.2 kW), fins, or a larger housing" in answer.err
-    assert "the largest loss is that of teeth" in answer.err and "for worms PAG" in answer.err
+    assert "the largest loss is that of teeth" in answer.err and "more starts of the worm" in answer.err
     plate = ("--stages", "helical,helical", "--ratio", 20, "--power", "600 kW", "--speed", "1450 rpm")
     answer = gearheat("new", "weak", *plate, "--bearings", "ball", "-o", tmp_path / "weak.toml")
     assert answer.code == 0, answer.err
     assert "the catalogue has no stronger one" in answer.err
     with pytest.raises(ScenarioError, match="--speed, or give it --cooler"):
-        new("hotter", stages="helical,helical", ratio=12, power="7.5 MW", speed="5611 rpm")
+        new("hotter", stages="planetary", ratio=4, power="5 MW", speed="6000 rpm")
 
 
 @pytest.mark.parametrize(
@@ -187,7 +188,7 @@ SPURS = {"stages": "spur,spur", "ratio": 9, "power": "30 kW", "speed": "1450 rpm
         (SERVO | {"bearings": "roller"}, ("(--bearings ball), or",)),
         (
             SERVO | {"bearings": "ball"},
-            ("bearing, 71 %: those of planets have most of it, and no option changes them",),
+            ("bearing, 72 %: those of planets have most of it, and no option changes them",),
         ),
         (
             SERVO | {"stages": "spur", "ratio": 8, "speed": "6000 rpm"},
@@ -236,6 +237,10 @@ def test_it_is_what_one_would_draw(made):
         ("helical,worm", 60, 433, 1400, 27, 1.0),  # SEW S67
         ("planetary", 5, 81, 2900, 3.9, None),  # Wittenstein SP 075, 240
         ("planetary", 5, 2872, 1000, 77, None),
+        ("planetary,planetary", 20, 1250, 1450, 27, 1.1),  # Bonfiglioli 301, 306, 311, 317 with two stages at 1/1.4
+        ("planetary,planetary", 20, 6070, 1450, 85, 3),
+        ("planetary,planetary", 20, 25000, 1450, 250, 7),
+        ("planetary,planetary", 20, 107100, 1450, 950, 25),
     ],
 )
 def test_it_is_as_heavy_and_full_as_makers_units_are(stages, ratio, torque, rpm, kg, litres):
@@ -244,6 +249,29 @@ def test_it_is_as_heavy_and_full_as_makers_units_are(stages, ratio, torque, rpm,
     bodies = rig_file.compute_bodies(made)
     assert 0.7 < (bodies["mass"] + (bodies["C_gears"] + bodies["C_shafts"]) / 470) / kg < 1.5
     assert litres is None or 0.55 < sizing.bath(made)["volume"] / litres < 1.6
+
+
+def test_a_sump_makes_a_housing_larger_on_all_sides(tmp_path):
+    """Small gears of a fast unit ask for more oil than the box around them holds: it was 2.5 m high, 0.3 m wide."""
+    made = sizing.unit(["helical"], 0.3, 2e6, 3600 * math.pi / 30)
+    assert sizing.bath(made)["volume"] == pytest.approx(220, rel=1e-3)
+    assert made.height < made.length < 3 * made.width
+
+
+@pytest.mark.parametrize(("stages", "ratio", "power"), [("planetary", 4, "5 MW"), ("worm", 40, "75 kW")])
+def test_cooled_oil_takes_the_heat_of_teeth_and_bearings(stages, ratio, power):
+    """Gears were 110 K warmer than oil that a pump brings to them; makers allow bearings up to 90 to 100 degC."""
+    hot = steady(new("a", stages=stages, ratio=ratio, power=power, speed="1500 rpm", cooler=True))
+    assert all(hot["oil.T"] < hot[f"{body}.T"] < 273.15 + 100 for body in ("gears", "shafts"))
+
+
+def test_notes_of_a_plate_belong_to_the_rig():
+    plate = {"stages": "helical", "ratio": 2.8, "power": "200 kW", "speed": "25 Hz"}
+    told = " ".join(new("a", **plate).notes)
+    assert "(PAO), as have finer flanks." in told and "worm" not in told and "mains" not in told
+    assert "are those of the mains" in " ".join(new("a", **plate | {"speed": "50 Hz"}).notes)
+    with pytest.raises(ScenarioError, match='"50 W" or "50 kW"'):
+        new("a", **plate, motor_heat="50")
 
 
 @pytest.mark.parametrize(("ratio", "torque", "speed", "idle"), [(5, 81, 2900, 0.96), (10, 174, 2800, 1.0)])
@@ -364,12 +392,13 @@ def test_planets_lose_less_than_a_blade_in_oil_would():
         assert stage.swept < 0.2 * (2 * stage.b * stage.reach**4 / 4)
 
 
-@pytest.mark.parametrize(("ratio", "power", "b"), [(10, "126 W", 3), (7, "7.5 kW", 11)])
-def test_a_sun_is_as_wide_as_its_load_asks_and_no_disc(tmp_path, ratio, power, b):
+@pytest.mark.parametrize(("ratio", "power", "b", "load"), [(10, "126 W", 3, 1.53), (7, "7.5 kW", 16, 2.68)])
+def test_a_sun_is_as_wide_as_its_load_asks_and_no_disc(tmp_path, ratio, power, b, load):
     rig = new("a", stages="planetary", ratio=ratio, power=power, speed="3000 rpm", out=(path := tmp_path / "a.toml"))
     assert rig.sizes["stages"][0]["b"] == pytest.approx(b / 1000)
     text = path.read_text("utf-8")
-    assert 'b = "assumed: for that load, at least 0.35 of the sun\'s diameter"' in text and "at most 4 N/mm2" in text
+    assert 'b = "assumed: for that load, at least 0.35 of the sun\'s diameter"' in text
+    assert f"at most {load} N/mm2" in text
 
 
 @pytest.mark.parametrize(("name", "count"), [("two", 0), ("four", 6)])
@@ -450,7 +479,8 @@ def test_a_housing_gives_off_what_the_standards_expect(made, gearheat, name):
     """10 to 14 W/(m2.K) in a small room without draught, 17 to 20 in a hall with 1.4 m/s, more if 80 K hotter."""
     path, answer = made(name)
     area = {p.name: p.values for p in load(path).spec.parts}["cooling"]["A"]
-    assert 10 < answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 22
+    held = answer.json["foot_share"] if answer.json["base"] == "flange" else 0.0  # what a steel plate in air takes
+    assert 10 < (1 - held) * answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 22
 
 
 def test_a_fan_without_a_shaft_is_named(made, gearheat, tmp_path):
@@ -771,7 +801,7 @@ def test_steep_tapered_bearings_are_for_axial_loads(axial, steep):
     assert (a.name.startswith("SKF 313"), b.name.startswith("SKF 313")) == (steep, steep)
 
 
-@pytest.mark.parametrize(("power", "rule"), [("7.5 kW", "1.6 times 41.3 mm"), ("2 MW", "1.204 times 265.8 mm")])
+@pytest.mark.parametrize(("power", "rule"), [("7.5 kW", "1.506 times 41.3 mm"), ("2 MW", "1.204 times 265.8 mm")])
 def test_bearings_of_a_carrier_say_their_rule(tmp_path, power, rule):
     new("a", stages="planetary", ratio=7, power=power, speed="1450 rpm", cooler=True, out=(path := tmp_path / "a.toml"))
     said = re.findall(r"bore above (.*) by load", path.read_text("utf-8"))
@@ -841,7 +871,7 @@ def test_a_data_sheet_takes_the_place_of_the_rules(gearheat, tmp_path):
 
 @pytest.mark.parametrize(
     ("plate", "housing"),
-    [({"stages": "planetary", "ratio": 5, "power": "11 kW"}, "0.173 m2"), ({"stages": "worm", "ratio": 20}, "0.1 m2")],
+    [({"stages": "planetary", "ratio": 5, "power": "11 kW"}, "0.05 m2"), ({"stages": "worm", "ratio": 20}, "0.1 m2")],
 )
 def test_the_housing_that_a_refusal_names_goes(plate, housing):
     plate = {"power": "1.5 kW", "speed": "1450 rpm"} | plate

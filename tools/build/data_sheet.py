@@ -98,6 +98,17 @@ def thousands(texts: Mapping[str, str]) -> Iterator[str]:
                     yield f'{option}: {number} is read as {read}. Write "{meant}" if a thousand is meant.'
 
 
+def mains(speed: str) -> Iterator[str]:
+    """A note on a speed that may be the frequency of the mains.
+
+    Args:
+        speed: as it is written
+    """
+    if found := re.fullmatch(r"\s*([56]0)(\.0*)?\s*Hz\s*", speed):
+        rpm = 60 * int(found[1])
+        yield f"--speed {speed} is read as {rpm} rpm. On a motor's plate Hz are those of the mains: give its rpm."
+
+
 def wanted_of(centre: str | None, housing: str | None, volume: str | None) -> Wanted:
     """What a data sheet says, in SI.
 

@@ -24,10 +24,10 @@ from ..show.console import writable, write
 from ..show.endings import fitting
 from ..solve.settings import flat_of
 from ..solve.steady import SteadyState, conditions, outside_of
-from .allowed import check
-from .data_sheet import Wanted, spell_all, thousands, wanted_of, watts_of
+from .allowed import IN_LINE, check
+from .data_sheet import Wanted, mains, spell_all, thousands, wanted_of, watts_of
 from .plausible import PLATE, WARM, no_load, notes, usual
-from .rig_file import Around, Losses, around_of, lost, text
+from .rig_file import CONCRETE, FLANGED, Around, Losses, around_of, lost, text
 from .sizing import Unit, unit
 
 #: What the answer holds of a stage.
@@ -67,7 +67,7 @@ def new(
     bearings: str = "auto",
     fan: bool = False,
     cooler: bool = False,
-    base: str = "concrete",
+    base: str | None = None,
     motor_heat: Any = None,
     air_speed: Any = None,
     centre_distance: Any = None,
@@ -90,7 +90,7 @@ def new(
         fan: on the fast shaft
         cooler: of the oil, for the losses at the name plate
         base: what its foot stands on, "concrete" or a "steel" frame; "flange" on a steel plate; "free" on rubber, or
-            where it hangs on its shaft
+            where it hangs on its shaft; "concrete" if None, "flange" with planetary stages
         motor_heat: what comes by the flange of a motor that is bolted to it, such as "50 W"
         air_speed: along the housing, such as "1 m/s"; 0.3 m/s if None, beside a motor that is bolted to it 1.25 m/s
         centre_distance: of the last stage, spur, helical or worm, such as "160 mm"; by load if None
@@ -109,8 +109,8 @@ def new(
         True
     """
     sizes = {"--motor-heat": motor_heat, "--air-speed": air_speed, "--centre-distance": centre_distance}
-    sizes |= {"--housing": housing, "--oil-volume": oil_volume}
-    plate = {"name": name, "--power": power, "--speed": speed, "--oil": oil, "--bearings": bearings, "--base": base}
+    sizes |= {"--housing": housing, "--oil-volume": oil_volume, "--base": base}
+    plate = {"name": name, "--power": power, "--speed": speed, "--oil": oil, "--bearings": bearings}
     texts = spell_all(plate | {option: size for option, size in sizes.items() if size is not None})
     power, speed, problems = texts["--power"], texts["--speed"], Problems()
     kinds, ratio = _kinds(stages), _number(ratio)
@@ -120,14 +120,15 @@ def new(
     wanted = problems.of(lambda: wanted_of(*map(texts.get, ("--centre-distance", "--housing", "--oil-volume"))))
     problems.of(lambda: check(kinds, ratio, *drive, bearings, wanted or Wanted()))
     entry = problems.of(lambda: _oil(oil))
+    stands = FLANGED if IN_LINE in kinds else CONCRETE
     motor, air = map(texts.get, ("--motor-heat", "--air-speed"))
-    around = problems.of(lambda: around_of(base, fan, cooler, motor, air, housing is not None))
+    around = problems.of(lambda: around_of(texts.get("--base", stands), fan, cooler, motor, air, housing is not None))
     if not re.fullmatch(r"[\w.-]+", name):
         problems.append(f'"{name}" is no name. Take letters, digits, _, - and dots.')
     made = None if problems else problems.of(partial(unit, kinds, ratio, *drive, bearings, wanted or Wanted()))
-    grouped = tuple(thousands(texts))
+    doubts = *thousands(texts), *mains(speed)
     if made is None or entry is None or around is None:
-        raise ScenarioError([*problems, *grouped])
+        raise ScenarioError([*problems, *doubts])
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.toml" if out is None else Path(out)
         fitting(path, "a rig file")
@@ -137,7 +138,7 @@ def new(
         doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
         try:
             rig = _solved(path, made, around, partial(text, made, doc, speed, entry, around))
-            return replace(rig, notes=(*grouped, *rig.notes))
+            return replace(rig, notes=(*doubts, *rig.notes))
         except BaseException as error:
             path.unlink(missing_ok=True)
             if not isinstance(error, GearheatError):
@@ -180,9 +181,10 @@ def _solved(path: Path, made: Unit, around: Around, drawn: Callable[[Losses], st
         point = conditions(scenario, flat)
         rest = SteadyState(scenario, flat, result := steady(flat, point), backward=False)
         loss, off = rest["efficiency.P_loss"], abs(rest["input.P"] / made.power - 1)
-        if off <= PLATE and not around.cooler:
+        solved = losses.solved or off > PLATE
+        if not (solved or around.cooler):
             break
-        losses = replace(losses, P=loss) if off <= PLATE else Losses(rest["efficiency.eta"], loss, True)
+        losses = Losses(rest["efficiency.eta"], loss, True) if solved else replace(losses, P=loss)
     idle = steady(flat, point | {"output.load": 0.0})["efficiency.P_loss"]
     kinds = [s.kind for s in made.stages]
     foot = rest["foot.Q_flow"] if around.base != "free" else 0.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.files import tables
 from . import sizing
-from .allowed import last_ratio
+from .allowed import LAST, last_ratio
 from .bearings import BALLS, LIFE
 from .rig_file import Around
 from .shafts import gaps
@@ -142,6 +142,8 @@ def _advise(made: Unit, kind: str, loss: float, losses: Mapping[str, float]) -> 
         needles = sum(P for part, P in losses.items() if part.startswith("planet_bearing"))
         rollers = any(shaft.kinds != BALLS for shaft in made.shafts)
         kind = "needles" if needles > loss / 2 else "rollers" if rollers else kind
+    elif kind == "teeth" and made.stages[-1].kind == LAST:
+        kind = LAST
     return str(MACHINES["advice"][kind])
 
 

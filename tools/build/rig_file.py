@@ -19,7 +19,7 @@ from .bearings import LIGHT, PRELOAD
 from .shafts import APART, OVERHANG
 from .sizing import Unit
 from .stages import DRAG, KINDS, Y_W, BevelStage, PlanetaryStage, WormStage
-from .teeth import FACE, K_BEVEL, K_STAR, NARROW, SLIM, T_WORM, WIDTH
+from .teeth import FACE, K_BEVEL, K_STAR, NARROW, SLIM, T_WORM, WIDTH, load_of_sun
 
 #: Fastest air along a housing [m/s].
 STORM = to_si(RANGES["m/s"]["air_speed"][1], "m/s")
@@ -43,6 +43,10 @@ AIR = 0.15
 FAN = 3.0
 #: How much warmer the oil is than the water or air of its cooler [K].
 COOLED = 50.0
+#: How much all of the loss warms cooled oil, half of which is sprayed on teeth, half on bearings, usual of coolers [K].
+WARMED = 15.0
+#: How much nearer it comes to the temperature of what it is sprayed on [1].
+TAKEN = 0.5
 #: Metal of ribs, fins and flanges, and what it is over that of the walls [1]; of worms fitted to makers' masses (NMRV).
 RIBBED = {"gears": ("cast iron", 0.25), "worm": ("cast iron", 0.6), "small worm": ("aluminium", 1.45)}
 #: Height of a rib over its thickness [1].
@@ -51,8 +55,12 @@ RIBS = 2.5
 DRAUGHT = 0.3
 #: That for which a maker rates units with a motor that cools itself (Rossi, UTD.123.2019-10, 7.16) [m/s].
 BLOWN = 1.25
-#: What a unit stands on.
-BASES = ("concrete", "steel", "flange", "free")
+#: What units stand on.
+CONCRETE = "concrete"
+#: And planetary ones.
+FLANGED = "flange"
+#: All.
+BASES = (CONCRETE, "steel", FLANGED, "free")
 #: Bolts of a foot or flange.
 BOLTS = 4
 #: Diameter of a bolt over the wall's thickness [1].
@@ -100,7 +108,7 @@ def around_of(base: str, fan: bool, cooler: bool, heat: str | None, air: str | N
     if base not in BASES:
         problems.append(f'nothing stands on "{base}".{suggestion(base, BASES)} Bases: {", ".join(BASES)}.')
     if heat is not None:
-        motor, draught = problems.of(lambda: to_si(heat, "W", name="--motor-heat")), BLOWN
+        motor, draught = problems.of(lambda: to_si(heat, "W", name="--motor-heat", usual=("W", "kW"))), BLOWN
     if motor is not None and motor < 0:
         problems.append(f"--motor-heat = {heat}: a motor gives heat, expected 0 W or more.")
     speed = draught if air is None else problems.of(lambda: to_si(air, "m/s", name="--air-speed"))
@@ -157,7 +165,10 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, losses: Los
         "bath": sizing.bath(made),
         "splash": sizing.splash(made) | {"r": f"stage_{made.numbers[0]}.r_1" if worm else _reach(made, 0)},
         "below": made.below,
-        "holds": f" for {1e6 * sizing.SUMP:g} l of oil a kW" if made.below > sizing.BELOW * made.wall else "",
+        "form": "cylinder in the " if made.shape < 1 else "",
+        "holds": f", larger on all sides for {1e6 * sizing.SUMP:g} l of oil a kW"
+        if made.below > sizing.BELOW * made.wall
+        else "",
         "reached": 100 * sizing.REACHED,
         "side": sizing.side_of(made.stages),
         "gap": made.wall,
@@ -172,6 +183,9 @@ def text(made: Unit, doc: str, speed: str, oil: str, around: Around, losses: Los
         "fan": _fan(made) if around.fan else None,
         "cooled": COOLED,
         "cooler": losses.P / COOLED if around.cooler else None,
+        "sprayed": TAKEN / 2 * losses.P / WARMED,
+        "warmed": WARMED,
+        "taken": TAKEN,
         "foot": _foot(made, around.base),
         "motor": around.motor,
         "air": around.air,
@@ -203,7 +217,8 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
         shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
     elif isinstance(s, PlanetaryStage):
-        rule = f"F_t/(b d_1) (u + 1)/u of sun and planet at most {K_STAR / 1e6:g} N/mm2, standard module, spur teeth"
+        load = load_of_sun(s.T * s.u)
+        rule = f"F_t/(b d_1) (u + 1)/u of sun and planet at most {load / 1e6:.3g} N/mm2, standard module, spur teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": NARROW}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
         shape |= {"needles": f"planet_bearing_{made.numbers[k]}", "drag": DRAG}
@@ -283,7 +298,7 @@ def _foot(made: Unit, base: str) -> dict[str, Any] | None:
         return None
     outline, D, wide = made.length * made.width, min(made.length, made.height), 1 + 2 * BEYOND
     A, A_frame, beyond = STRIPS * outline, 2 * 2 * BEYOND * outline, BEYOND * made.length
-    if base == "flange":
+    if base == FLANGED:
         A, beyond = math.pi / 4 * (1 - SPIGOT**2) * D**2, BEYOND * D
         A_frame = 2 * math.pi / 4 * (wide**2 - 1) * D**2
     d, bolts = _bolted(made, A)

@@ -18,8 +18,9 @@ OVERHANG = 2.5
 APART = 0.9
 #: Distance of bearings over their bore, of a shaft without tooth forces [1].
 BARE = 1.3
-#: Bore of bearings on a carrier, which its shaft begins at, over the diameter of that shaft [1].
-CARRIER = 1.6
+#: Bore of bearings on a carrier, which its shaft begins at, over the diameter of that shaft [1]: at a diameter [m], and
+#: by which power of it less. Fitted to makers' masses: servo units need stiffer carriers than larger ones.
+CARRIER = 1.6, 0.025, 0.12
 #: Of a housing's wall between two bearings beside each other [m].
 WEB = 0.003
 
@@ -81,6 +82,12 @@ def find_tight(stages: Sequence[Stage], shafts: Sequence[Shaft]) -> set[int]:
     return {k for k, gap in zip(beside, gaps(stages, shafts), strict=True) if gap < 0 or shafts[k].excess}
 
 
+def _carried(d: float) -> float:
+    """Bore of the bearings on a carrier with a shaft of a diameter [m]."""
+    wider, at, power = CARRIER
+    return d * max(wider * math.pow(at / d, power), 1.0)
+
+
 def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     """What the shaft behind k stages may be, one for each kind of bearings, the best first."""
     before, behind = stages[k - 1 : k] if k else (), stages[k : k + 1]
@@ -92,7 +99,7 @@ def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     gears = [(s.forces[1], s.x, s.r_2) for s in before if s in wheels]
     gears += [(s.forces[0], s.x, s.r_1) for s in behind if s in wheels]
     pairs = (CHOICES if gears else UNLOADED if behind else HELD)[bearings]
-    bore = d if gears or behind else min(CARRIER * d, next(most for p in pairs if (most := largest_bore([p])) >= d))
+    bore = d if gears or behind else min(_carried(d), next(most for p in pairs if (most := largest_bore([p])) >= d))
     span = max(s.x + s.b / 2 for s in wheels) + side if gears else BARE * bore
     if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
         beyond = side + stages[0].b / 2

@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Any
 
+from scipy.optimize import brentq
+
 from ...model.errors import ScenarioError
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
@@ -39,8 +41,11 @@ DIP = 3.0
 SUMP = 1.1e-7
 #: Share of what is below the level that is oil [1].
 FILLED = 0.8
-#: Share of the housing's volume that is oil where no level follows from wheels.
-SHARE = 0.16
+#: Share of the housing's volume that is oil where no level follows from wheels: of worms; of planets, fitted to
+#: makers' units of 1 to 110 kN.m.
+SHARE = {"worm": 0.16, "planetary": 0.11}
+#: Surface, and volume, of a cylinder over those of the box around it, whatever its length [1].
+ROUND = math.pi / 4
 #: On the ratio of the first of several stages, tried in this order until whole teeth come close to the ratio of all.
 SHIFTS = (1.0, 0.98, 1.02, 0.96, 1.04)
 #: Share of the walls that bath and splash reach [1].
@@ -93,9 +98,14 @@ class Unit:
         return math.prod(s.turn for s in self.stages)
 
     @property
+    def shape(self) -> float:
+        """Surface and volume over those of the box: around a ring the housing is round."""
+        return ROUND if isinstance(self.stages[-1], PlanetaryStage) else 1.0
+
+    @property
     def area(self) -> float:
-        """Of the box."""
-        return 2 * (self.length * self.width + self.length * self.height + self.width * self.height)
+        """Of the housing."""
+        return 2 * self.shape * (self.length * (self.width + self.height) + self.width * self.height)
 
 
 def unit(
@@ -133,7 +143,7 @@ def unit(
     span = last.x + last.b / 2 + side_of(stages) + sum(s.span for s in (shafts[0], shafts[-1]) if not s.places)
     box = 0.0, span + 2 * END * wall, 0.0, BELOW * wall
     drawn = _around(Unit(ratio, stages, shafts, wall, *box, wanted.volume, wanted.centre))
-    return _boxed(drawn if wanted.box else _deepened(drawn, power), wanted)
+    return _boxed(drawn, drawn if wanted.box else _enlarged(drawn, power), wanted)
 
 
 def _stages(
@@ -187,7 +197,8 @@ def _around(drawn: Unit) -> Unit:
         length = drawn.shafts[-2].span + 2 * END * wall + sum(s.b + wall for s in stages[:-1])
         height = max(s.a + sum(pair) for s, pair in zip(stages, tips, strict=True)) + room
     elif isinstance(stages[-1], PlanetaryStage):  # one behind the other, gears before them beside the axis
-        ring = max(s.reach + 4 * s.m_n for s in stages if isinstance(s, PlanetaryStage))
+        rings = [s.reach + 4 * s.m_n for s in stages if isinstance(s, PlanetaryStage)]
+        ring = max([*rings, *(D / 2 for D in drawn.shafts[-1].outer)])
         gears = [(s, tip) for s, tip in zip(stages, tips, strict=True) if not isinstance(s, PlanetaryStage)]
         beside = sum(s.along for s, _ in gears) + sum(_first(stages[0]) for _ in gears[:1])
         length = max(beside, ring) + ring + beyond
@@ -195,14 +206,22 @@ def _around(drawn: Unit) -> Unit:
     return replace(drawn, length=length, height=height)
 
 
-def _deepened(drawn: Unit, power: float) -> Unit:
-    """The unit with a sump that holds the oil which the power asks for, or a data sheet has where that is less."""
-    oil = bath(replace(drawn, volume=None))
-    if oil["level"] is None:
+def _enlarged(drawn: Unit, power: float) -> Unit:
+    """The unit in a housing larger on all sides that holds the oil which the power asks for, or a data sheet has where
+    that is less.
+    """
+
+    def grown(by: float) -> Unit:
+        length, width, height = (by * side for side in (drawn.length, drawn.width, drawn.height))
+        return replace(drawn, length=length, width=width, height=height, below=drawn.below + height - drawn.height)
+
+    def lacks(by: float) -> float:
+        return asked - float(bath(replace(grown(by), volume=None))["volume"]) / 1000
+
+    asked = min(SUMP * power, drawn.volume or math.inf)
+    if not any(map(dips, drawn.stages)) or lacks(1.0) <= 0:
         return drawn
-    lacks = min(SUMP * power, drawn.volume or math.inf) - oil["volume"] / 1000
-    more = max(lacks, 0.0) / FILLED / _floor(drawn)
-    return replace(drawn, height=drawn.height + more, below=drawn.below + more)
+    return grown(brentq(lacks, 1.0, 1.0 + (asked / FILLED) ** (1 / 3) / min(_floor(drawn) ** 0.5, drawn.height)))
 
 
 def _floor(made: Unit) -> float:
@@ -215,18 +234,20 @@ def _first(stage: Stage) -> float:
     return 0.0 if isinstance(stage, BevelStage) else stage.r_1 + stage.m_n
 
 
-def _boxed(made: Unit, wanted: Wanted) -> Unit:
-    """The unit in the housing, and with the oil, that a data sheet says."""
-    drawn = made.length, made.width, made.height
-    box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in drawn)
-    found = replace(made, length=box[0], width=box[1], height=box[2], drawn=made.area)
-    room = 2 * made.wall + _folded(made), 2 * (END - 1) * made.wall, made.wall + made.below
+def _boxed(plain: Unit, made: Unit, wanted: Wanted) -> Unit:
+    """The unit in the housing, and with the oil, that a data sheet says; plain is that in the box around its gears."""
+    sides = made.length, made.width, made.height
+    box = wanted.box or tuple(side * math.sqrt((wanted.area or made.area) / made.area) for side in sides)
+    below = min(made.below, max(plain.below, made.below + box[2] - made.height))
+    found = replace(made, length=box[0], width=box[1], height=box[2], below=below, drawn=made.area)
+    drawn = plain.length, plain.width, plain.height
+    room = 2 * made.wall + _folded(made), 2 * (END - 1) * made.wall, made.wall + plain.below
     least = [side - part for side, part in zip(drawn, room, strict=True)]
     if any(side < need for side, need in zip(box, least, strict=True)):
-        need = made.area * max(part / side for part, side in zip(least, drawn, strict=True)) ** 2
-        sides = _sides([math.ceil(1000 * side) / 1000 for side in least])
+        need = made.area * max(part / side for part, side in zip(least, sides, strict=True)) ** 2
+        expected = _sides([math.ceil(1000 * side) / 1000 for side in least])
         raise ScenarioError(
-            f"--housing of {_sides(box)} is too small for the gears: expected {sides} at least, or"
+            f"--housing of {_sides(box)} is too small for the gears: expected {expected} at least, or"
             f" {safe(need, 3, math.ceil)} m2 by its area alone. Give a larger one, or a lower power or ratio."
         )
     level = bath(found)["level"] or (wanted.volume or 0.0) / (found.length * found.width)
@@ -273,8 +294,9 @@ def bath(made: Unit) -> dict[str, Any]:
     """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
     given, floor = made.volume, _floor(made)
     if not any(map(dips, made.stages)):
-        volume = given or SHARE * made.length * made.width * made.height
-        rule = "data sheet" if given else f"assumed: {100 * SHARE:.0f} % of the housing's volume"
+        share = SHARE[made.stages[-1].kind]
+        volume = given or share * made.shape * made.length * made.width * made.height
+        rule = "data sheet" if given else f"assumed: {100 * share:.0f} % of the housing's volume"
         return {"volume": 1000 * volume, "level": None, "rule": rule}
     taken = f"gears, ribs and shafts take {100 * (1 - FILLED):.0f} % of what is below it"
     if given:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import groupby
@@ -26,7 +25,7 @@ def new(
     bearings: str = "auto",
     fan: bool = False,
     cooler: bool = False,
-    base: str = "concrete",
+    base: str | None = None,
     motor_heat: str | None = None,
     air_speed: str | None = None,
     centre_distance: str | None = None,
@@ -36,11 +35,6 @@ def new(
     json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
-    if mains := re.fullmatch(r"\s*([56]0)(\.0*)?\s*Hz\s*", speed):
-        rpm = 60 * int(mains[1])
-        console.note(
-            f"--speed {speed} is read as {rpm} rpm. On a motor's plate Hz are those of the mains: give its rpm."
-        )
     path = out or Path(f"{name}.toml")
     chosen: dict[str, Any] = {"oil": oil, "bearings": bearings, "fan": fan, "cooler": cooler, "base": base}
     plate: dict[str, Any] = {"stages": stages, "ratio": ratio, "power": power, "speed": speed}
