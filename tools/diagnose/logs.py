@@ -238,7 +238,7 @@ def _gross(logs: Sequence[Log]) -> list[GrossReading]:
 def _gain(known: Fleet, asked: Question, found: Found, spans: Logged, progress: Callable[[float], None]) -> f.Gain:
     """Free-running error of spans of the logs, with the causes that are found without them."""
     own, data, read = known.filter, asked.windows, spans.read
-    before = np.tile(asked.curves.base, (len(data.read), 1))
+    before = known.usual(data)
     after, chosen = before.copy(), Counter[str]()
     for k in range(FOLDS):
         rows = np.arange(k, spans.campaign.n, FOLDS)
@@ -277,19 +277,19 @@ def _pictures(
     known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
 ) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
     """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
-    own, level = known.filter, asked.curves.base
+    own = known.filter
     past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:
         """Measured less simulated, free-running: means of the windows (n, reads)."""
-        return means(own.run(data, level + moves, free=True, slopes=False).error)
+        return means(own.run(data, known.usual(data) + moves, free=True, slopes=False).error)
 
     def whole(part: np.ndarray) -> np.ndarray:
         """Past and present in the order of time; the past is as it is."""
         return np.asarray(np.concatenate([healthy, part])[by_time].T)
 
-    healthy, before = (left(data, np.zeros((len(data.time), len(level)))) for data in (past, now))
+    healthy, before = (left(data, np.zeros((len(data.time), len(own.knobs)))) for data in (past, now))
     causes = decision.leader.causes
     after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
     together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
@@ -320,10 +320,10 @@ def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[L
     """
     own, leader, read, changes = known.filter, told.decision.leader, logs[0].read, {}
     whole = windows(logs, own.given, own.read, 0)
+    usual = known.usual(whole)
 
     def shown(moves: np.ndarray) -> np.ndarray:
-        z = np.tile(asked.curves.base + moves, (len(whole.time), 1))
-        return own.run(whole, z, free=True, slopes=False).shown
+        return own.run(whole, usual + moves, free=True, slopes=False).shown
 
     sound = shown(np.zeros(len(own.knobs))) if leader.fit.causes else np.zeros(0)
     for cause in leader.fit.causes:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagnose.infer.levels import at_duty, open_at
+from ..diagnose.infer.levels import open_at
 from ..diagnose.infer.logs import Fleet
 from ..diagnose.model.windows import Windows, means
 
@@ -33,7 +33,7 @@ def expect(known: Fleet, window: Windows) -> Expected:
     own, levels = known.filter, known.levels
     sd = np.array([k.sd for k in own.knobs])
     duty = known.duty.at(window)
-    z = known.curves.back(at_duty(duty, levels.mean[[0]]) + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
+    z = known.curves.back(known.does(window) + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
     shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, free=True, slopes=False).shown
     read = np.where(window.counts[0, :, None], window.read[0], np.nan)
     mean = means(np.where(np.isfinite(read), shown, np.nan))

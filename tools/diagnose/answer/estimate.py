@@ -199,7 +199,7 @@ def impacts_of(
     """Mean change of each sensor by causes of a hypothesis, from that by each (sensors,), in proportion to its size."""
     if not changes:
         return {}
-    x, covariance = posterior(problem, h)
+    x, covariance = h.fit.look.x, posterior(problem, h.fit)
     own = np.array(Vector(problem, h.fit.look).sizes)[[h.fit.causes.index(c) for c in changes]]
     slopes = np.array(list(changes.values())) / x[own, None]
     sds = np.sqrt(np.einsum("ij,ik,kj->j", slopes, covariance[np.ix_(own, own)], slopes))

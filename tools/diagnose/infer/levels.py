@@ -17,12 +17,10 @@ from ..model.logs import Quadratics
 SEASON = 0.25
 #: As shares of that of machines.
 WINDOW = 0.25
-#: Of slopes by a feature of the duty, as a share of that of machines.
-SLOPE = float(__import__("os").environ.get("SLOPE", ".15"))
 #: How many deviations this expectation counts for.
 COUNTS = 2.0
 #: Least share of the covariance of seasons by which a season differs from itself at another time.
-SAME = float(__import__("os").environ.get("SAME", "1e-6"))
+SAME = 1e-6
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
 
@@ -57,7 +55,7 @@ class Levels:
 
 
 def first_levels(sd: np.ndarray, slopes: np.ndarray, machines: int) -> Levels:
-    """Levels before any data, by the standard deviations of the knobs between machines (k,) and numbers of both."""
+    """Levels before any data, by standard deviations of the knobs (k,) and slopes (k d,) between so many machines."""
     window, machine = np.diag(sd**2), np.diag(np.r_[sd, slopes] ** 2)
     root, mean = 1.5**2 * machine, np.zeros((machines, len(machine)))
     C = np.tile(root + machine, (machines, 1, 1))
@@ -66,7 +64,7 @@ def first_levels(sd: np.ndarray, slopes: np.ndarray, machines: int) -> Levels:
 
 def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:
     """Knobs (n, k) at duties (n, 1 + d), from their values and slopes (n, k + k d)."""
-    return np.asarray(np.einsum("na,nai->ni", duty, mean.reshape(*duty.shape, -1)))
+    return np.asarray(np.einsum("na,nai->ni", duty, mean.reshape(*duty.shape, mean.shape[1] // duty.shape[1])))
 
 
 def open_at(duty: np.ndarray, covariance: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from ....scenarios.measured.logs import Log
 from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
-from ..library.knobs import knobs
+from ..library.knobs import Knob, knobs
 from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
@@ -43,6 +43,13 @@ STIFF = 0.02
 LATER = 14 * 86400.0
 #: Log likelihood of a sample by which a change is so large that it matters where the filter is.
 LARGE = 0.3
+#: How losses, heat paths and instruments follow a feature of the duty otherwise than their laws say, as a share of how
+#: machines differ,
+LAW = 0.15
+#: and what is no cause, as heat capacities: by them a rig of few bodies errs in what passes soon.
+INNER = 0.3
+#: What is left of a temperature by a feature of the duty [K].
+ERR = 0.8
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -81,6 +88,14 @@ class Fleet:
         past = self.past.some(np.zeros(0, dtype=int))
         return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons)
 
+    def does(self, data: Windows) -> np.ndarray:
+        """What the machine's knobs do in windows of their duties, in proportion to effects (n, k)."""
+        return at_duty(self.duty.at(data), self.levels.mean[[0] * len(data.time)])
+
+    def usual(self, data: Windows) -> np.ndarray:
+        """The machine's knobs in windows of their duties (n, k)."""
+        return self.curves.back(self.does(data))
+
     def going_on(self, logs: Sequence[Log]) -> Fleet:
         """The same for logs in question in one season of the machine's healthy ones, the nearer the more so.
 
@@ -111,6 +126,13 @@ def filter_of(scenario: Scenario, log: Log) -> Filter:
     bodies, states = plant.flat.bodies, plant.flat.states
     noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
     return Filter(plant, found, log.given, log.read, noise)
+
+
+def _slope(knob: Knob, read: bool) -> float:
+    """Standard deviation by which a knob follows a feature of the duty where the machine is not as its model."""
+    if read and knob.unit == "K":
+        return ERR
+    return knob.sd * (LAW if knob.cause else INNER)
 
 
 def _pass(progress: Progress, logs: str) -> Callable[[int, float], None]:
@@ -155,16 +177,11 @@ def fleet(
     sd = np.array([k.sd for k in own.knobs])
     past = windows(logs or [all_sensors], own.given, own.read, length)
     duty = Duty.of(past, all_sensors.given, all_sensors.read)
-    import os
-
-    SLOPE, KELVIN = float(os.environ.get("SLOPE", ".15")), float(os.environ.get("KELVIN", ".8"))
-    reads = [s.name for s in all_sensors.read]
-    each = np.array([KELVIN if k.sensor in reads and k.unit == "K" else SLOPE * k.sd for k in own.knobs])
-    begun = first_levels(sd, np.tile(each, len(duty.usual)), 1 + len(siblings))
+    slopes = [_slope(knob, knob.sensor in own.read) for knob in own.knobs]
+    begun = first_levels(sd, np.tile(slopes, len(duty.usual)), 1 + len(siblings))
     if not logs:
-        return Fleet(
-            own, past.some(np.zeros(0, dtype=int)), begun, 0.0, length, np.zeros((1, len(sd))), Curves({}, 0 * sd), duty
-        )
+        none, still = past.some(np.zeros(0, dtype=int)), np.zeros((1, len(sd)))
+        return Fleet(own, none, begun, 0.0, length, still, Curves({}, still[0]), duty)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
@@ -228,8 +245,7 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
         at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
     bent = found.curves if found.share else curves(own, data)
     told = passed.told(*bent.at(at)).times(found.share or independent(passed))
-    usual = at_duty(found.duty.at(data), levels.mean[[0] * len(season)])
-    moves = replace(told, eta=told.eta - (told.H @ usual[:, :, None])[:, :, 0])
+    moves = replace(told, eta=told.eta - (told.H @ found.does(data)[:, :, None])[:, :, 0])
     return Question(data, season, span, moves, bent.about(levels.mean[0, :k]))
 
 
@@ -287,11 +303,8 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     values = {s.name: np.zeros(n) for s in logs[0].sensors}
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    duty = found.duty.at(data)
-    duty = np.array([duty[asked.span == k].mean(axis=0) for k in range(n)])
-    roots = [
-        np.kron(duty, np.eye(len(own.knobs))).reshape(n, len(own.knobs), -1) @ np.linalg.cholesky(C)
-        for C in (found.levels.covariance[0], found.levels.season)
-    ]
-    spans = Logged(own.plant, campaign, own.knobs, told, roots[0], asked.curves)
-    return LogProblem(spans, season, roots[1], found.levels)
+    duty = np.array([found.duty.at(data)[asked.span == k].mean(axis=0) for k in range(n)])
+    follow = np.kron(duty, np.eye(len(own.knobs))).reshape(n, len(own.knobs), -1)
+    machine, seasons = (follow @ np.linalg.cholesky(C) for C in (found.levels.covariance[0], found.levels.season))
+    spans = Logged(own.plant, campaign, own.knobs, told, machine, asked.curves)
+    return LogProblem(spans, season, seasons, found.levels)

@@ -53,7 +53,7 @@ class Quadratics:
         return Quadratics(both[:, :, -1], (H + H.transpose(0, 2, 1)) / 2)
 
     def by_duty(self, duty: np.ndarray) -> Quadratics:
-        """The same of what the knobs follow: their values, and their slopes by each feature of `Windows.duty` (n, 1 + d)."""
+        """The same of what the knobs follow: their values, and slopes by each feature of a duty (n, 1 + d)."""
         n, m = duty.shape[0], duty.shape[1] * self.eta.shape[1]
         H = np.einsum("na,nb,nij->naibj", duty, duty, self.H)
         return Quadratics((duty[:, :, None] * self.eta[:, None, :]).reshape(n, m), H.reshape(n, m, m))

@@ -62,12 +62,12 @@ class Windows:
 
 @dataclass(frozen=True, eq=False)
 class Duty:
-    """What losses and heat paths may follow otherwise than their laws say: speeds, loads and a temperature.
+    """What losses and heat paths may follow otherwise than their laws say: speeds, loads, a temperature and its rise.
 
     Args:
         loads: numbers of the inputs
         warm: number of the reading
-        usual: means of each, the temperature last (d,)
+        usual: means of each, the temperature and how far it has risen in the last hours at the end (d,)
     """
 
     loads: Sequence[int]
@@ -89,7 +89,8 @@ class Duty:
 
     def at(self, data: Windows) -> np.ndarray:
         """One, and how far means of windows lie from the usual ones, of loads by half of these (N, 1 + d)."""
-        far = (self._means(data) - self.usual) / np.r_[self.usual[:-2] / 2, WARMER, WARMER]
+        unit = np.r_[np.maximum(self.usual[:-2] / 2, 1e-9), WARMER, WARMER]
+        far = (self._means(data) - self.usual) / unit
         return np.column_stack([np.ones(len(far)), np.where(np.isfinite(far), far, 0.0)])
 
 
