@@ -137,8 +137,7 @@ def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(far
     past, now = days < 0, days >= 0
     assert past.any() and now.any() and (np.diff(days) >= 0).all()
     np.testing.assert_array_equal(before[past], after[past])
-    assert np.mean(after[now] ** 2) < 0.7 * np.mean(before[now] ** 2)
-    assert np.std(after[now]) < 0.4 * np.std(before[now])  # a year's constant is no fault and stays
+    assert np.mean(after[now] ** 2) < 0.5 * np.mean(before[now] ** 2)
     shown = told.rows.channels[picture.channel]
     assert np.array(shown.measured) - np.array(shown.nominal) == pytest.approx(before, abs=1e-3)
 

@@ -14,7 +14,7 @@ from ....scenarios.measured.logs import Log
 from ....scenarios.measured.nominal import Nominal, drive_by
 from ....scenarios.measured.table import Campaign
 from ....scenarios.scenario import Scenario
-from ..library.knobs import Knob, knobs
+from ..library.knobs import knobs
 from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
@@ -128,13 +128,6 @@ def filter_of(scenario: Scenario, log: Log) -> Filter:
     return Filter(plant, found, log.given, log.read, noise)
 
 
-def _slope(knob: Knob, read: bool) -> float:
-    """Standard deviation by which a knob follows a feature of the duty where the machine is not as its model."""
-    if read and knob.unit == "K":
-        return ERR
-    return knob.sd * (LAW if knob.cause else INNER)
-
-
 def _pass(progress: Progress, logs: str) -> Callable[[int, float], None]:
     """Progress of passes over some logs."""
     return lambda n, share: progress(f"{logs}, pass {n + 1} of at most {PASSES}", (n + share) / PASSES)
@@ -177,7 +170,8 @@ def fleet(
     sd = np.array([k.sd for k in own.knobs])
     past = windows(logs or [all_sensors], own.given, own.read, length)
     duty = Duty.of(past, all_sensors.given, all_sensors.read)
-    slopes = [_slope(knob, knob.sensor in own.read) for knob in own.knobs]
+    errs = [knob.unit == "K" and knob.sensor in own.read for knob in own.knobs]
+    slopes = np.where(errs, ERR, sd * [LAW if knob.cause else INNER for knob in own.knobs])
     begun = first_levels(sd, np.tile(slopes, len(duty.usual)), 1 + len(siblings))
     if not logs:
         none, still = past.some(np.zeros(0, dtype=int)), np.zeros((1, len(sd)))

@@ -80,7 +80,8 @@ def _cause(own: Sequence[Knob]) -> Cause:
     forms = [_moved(knob, when, name, when.share / len(own)) for knob in own for when in WHENS]
     size = Size(name, first.unit, doc, first.usual, -most, most)
     kind, said = KINDS.get(first.cause.split(".")[1]), TABLE.get(first.cause, {})
-    exposes, like = said.get("exposes") or (kind.calibrate if kind else ""), TABLE["classes"].get(said.get("like"), "")
+    exposes = said.get("exposes") or (kind.calibrate if kind else "")
+    like = TABLE["classes"].get(said.get("like", ""), "")
     return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time", exposes=exposes, like=like)
 
 
