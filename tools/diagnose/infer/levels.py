@@ -17,6 +17,8 @@ from ..model.logs import Quadratics
 SEASON = 0.25
 #: As shares of that of machines.
 WINDOW = 0.25
+#: Of slopes by the duty, a matter of the type: share by which machines differ.
+OWN = 0.3
 #: How many deviations this expectation counts for.
 COUNTS = 2.0
 #: Least share of the covariance of seasons by which a season differs from itself at another time.
@@ -56,10 +58,17 @@ class Levels:
 
 def first_levels(sd: np.ndarray, slopes: np.ndarray, machines: int) -> Levels:
     """Levels before any data, by standard deviations of the knobs (k,) and slopes (k d,) between so many machines."""
-    window, machine = np.diag(sd**2), np.diag(np.r_[sd, slopes] ** 2)
-    root, mean = 1.5**2 * machine, np.zeros((machines, len(machine)))
+    window, machine = np.diag(sd**2), np.diag(np.r_[sd, OWN * slopes] ** 2)
+    root, mean = 1.5**2 * np.diag(np.r_[sd, slopes] ** 2), np.zeros((machines, len(machine)))
     C = np.tile(root + machine, (machines, 1, 1))
     return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * window, COUNTS, mean, C, mean[:0], C[:0])
+
+
+def log_evidence(found: Quadratics, covariance: np.ndarray) -> float:
+    """Of machines by what each says of its knobs, which are normal about the rig file with a covariance (k, k)."""
+    A = np.eye(len(covariance)) + found.H @ covariance
+    likely = covariance @ np.linalg.solve(A, found.eta[:, :, None])
+    return float((found.eta[:, None, :] @ likely).sum() - np.linalg.slogdet(A)[1].sum()) / 2
 
 
 def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:

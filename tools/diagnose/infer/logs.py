@@ -21,7 +21,7 @@ from ..model.logged import Logged
 from ..model.logs import Filter, Quadratics, log_likelihood
 from ..model.plant import Plant
 from ..model.windows import WINDOW, Duty, Windows, windows
-from .levels import Levels, at_duty, estimate, first_levels
+from .levels import Levels, at_duty, estimate, first_levels, log_evidence
 from .problem import Look, Problem
 from .walk import PASSES, curves, independent, loosen, suit, walk
 from .weigh import Progress
@@ -48,6 +48,9 @@ LARGE = 0.3
 LAW = 0.15
 #: and what is no cause, as heat capacities: by them a rig of few bodies errs in what passes soon.
 INNER = 0.3
+#: Shares of all this: laws are followed where healthy logs say so, by so many nats.
+FOLLOWED = (1.0, 0.3, 0.1, 0.03)
+SEEN_TO = 5.0
 #: What is left of a temperature by a feature of the duty [K].
 ERR = 0.8
 #: Length of a year in time that is no calendar's [s].
@@ -172,7 +175,8 @@ def fleet(
     duty = Duty.of(past, all_sensors.given, all_sensors.read)
     errs = [knob.unit == "K" and knob.sensor in own.read for knob in own.knobs]
     slopes = np.where(errs, ERR, sd * [LAW if knob.cause else INNER for knob in own.knobs])
-    begun = first_levels(sd, np.tile(slopes, len(duty.usual)), 1 + len(siblings))
+    tried = [first_levels(sd, np.tile(share * slopes, len(duty.usual)), 1 + len(siblings)) for share in FOLLOWED]
+    begun = tried[0]
     if not logs:
         none, still = past.some(np.zeros(0, dtype=int)), np.zeros((1, len(sd)))
         return Fleet(own, none, begun, 0.0, length, still, Curves({}, still[0]), duty)
@@ -187,6 +191,9 @@ def fleet(
     share = independent(passed)
     bent = curves(own, past)
     told = passed.told(*bent.at(at[machine])).times(share)
+    of_machines = told.spread(begun.window).by_duty(duty.at(past)).summed(machine, 1 + len(siblings))
+    logs_of = [log_evidence(of_machines, one.root + one.machine) for one in tried]
+    begun = next(one for one, log in zip(tried, logs_of, strict=True) if log > max(logs_of) - SEEN_TO)
     levels = estimate(told, duty.at(past), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
