@@ -10,9 +10,10 @@ from .stages import KINDS, PLANETS, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa].
 K_STAR = 4.0e6
-#: That of sun and planet [Pa] where the carrier has 1 kN.m, and by which power of its torque makers load larger ones
-#: more: fitted to masses of planetary units of 80 N.m to 110 kN.m.
-K_SUN = 3.5e6, 0.15
+#: That of sun and planet [Pa] where the carrier has 1 kN.m: fitted to masses of planetary units of 80 N.m to 110 kN.m,
+K_SUN = 3.5e6
+#: as is the power of its torque by which makers load larger ones more.
+GROWS = 0.15
 #: Face width over the pinion's diameter [1].
 WIDTH = 0.8
 #: That of a sun at least, which a small load would have narrower [1].
@@ -155,7 +156,7 @@ def _planetary(kind: str, u: float, T: float, n: float, a: float | None = None) 
 
 def load_of_sun(T: float) -> float:
     """Load intensity of sun and planet [Pa] where the carrier has a torque [N.m]."""
-    return K_SUN[0] * math.pow(T / 1000, K_SUN[1])
+    return K_SUN * math.pow(T / 1000, GROWS)
 
 
 def _fits(z_1: int, z_3: int) -> bool:

@@ -319,13 +319,15 @@ def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[L
     Whole stretches are run, with the largest move of each cause, and count by how far it has moved on average.
     """
     own, leader, read, changes = known.filter, told.decision.leader, logs[0].read, {}
+    if not leader.fit.causes:
+        return {}
     whole = windows(logs, own.given, own.read, 0)
     usual = known.usual(whole)
 
     def shown(moves: np.ndarray) -> np.ndarray:
         return own.run(whole, usual + moves, free=True, slopes=False).shown
 
-    sound = shown(np.zeros(len(own.knobs))) if leader.fit.causes else np.zeros(0)
+    sound = shown(np.zeros(len(own.knobs)))
     for cause in leader.fit.causes:
         moves = _moves(told.spans, leader, cause)
         far = np.abs(moves).sum(axis=1)

@@ -342,10 +342,8 @@ def test_fractions_are_a_running_order_and_one_for_all_is_none(clean: tuple[Sett
 
 def test_the_rise_that_causes_follow_does_not_follow_the_scatter_of_readings(clean: tuple[Setting, Found]) -> None:
     o = clean[1].problem.data
-    oil, noise = (
-        next(s.name for s in o.read if s.kind == "oil_temp"),
-        np.random.default_rng(1).normal(size=o.campaign.n),
-    )
+    oil = next(s.name for s in o.read if s.kind == "oil_temp")
+    noise = np.random.default_rng(1).normal(size=o.campaign.n)
     values = {**o.campaign.values, oil: o.campaign.values[oil] + noise}
     change = o.another(replace(o.campaign, values=values)).features[2] - o.features[2]
     assert change.std() < 0.8 * noise.std()

@@ -197,8 +197,6 @@ def impacts_of(
     problem: Problem, h: Hypothesis, read: Sequence[Sensor], changes: Mapping[str, np.ndarray]
 ) -> dict[str, findings.Impact]:
     """Mean change of each sensor by causes of a hypothesis, from that by each (sensors,), in proportion to its size."""
-    if not changes:
-        return {}
     x, covariance = h.fit.look.x, posterior(problem, h.fit)
     own = np.array(Vector(problem, h.fit.look).sizes)[[h.fit.causes.index(c) for c in changes]]
     slopes = np.array(list(changes.values())) / x[own, None]

@@ -29,13 +29,13 @@ ROUNDS = 40
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """Covariances of the knobs (k, k) on each level, and what is known of each machine.
+    """Covariances of the knobs and of their slopes by the duty on each level, and what is known of each machine.
 
     Args:
         root: prior covariance of the type about the rig file
-        machine, season, window: covariances of the deviations
+        machine, season, window: covariances of the deviations, the last of the knobs alone
         freedom: degrees of freedom of the season's
-        mean, covariance: of each machine's knobs (machines, k), (machines, k, k)
+        mean, covariance: of each machine's knobs and slopes (machines, k), (machines, k, k)
         season_mean, season_covariance: of them in each season of a machine (n, k), (n, k, k)
     """
 

@@ -48,11 +48,11 @@ LARGE = 0.3
 LAW = 0.15
 #: and what is no cause, as heat capacities: by them a rig of few bodies errs in what passes soon.
 INNER = 0.3
-#: Shares of all this: laws are followed where healthy logs say so, by so many nats.
-FOLLOWED = (1.0, 0.3, 0.1, 0.03)
-SEEN_TO = 5.0
 #: What is left of a temperature by a feature of the duty [K].
 ERR = 0.8
+#: Shares of all this: the first is taken by which healthy logs are not less likely than by another by so many nats.
+FOLLOWED = (1.0, 0.3, 0.1, 0.03)
+REFUTED = 5.0
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -193,7 +193,7 @@ def fleet(
     told = passed.told(*bent.at(at[machine])).times(share)
     of_machines = told.spread(begun.window).by_duty(duty.at(past)).summed(machine, 1 + len(siblings))
     logs_of = [log_evidence(of_machines, one.root + one.machine) for one in tried]
-    begun = next(one for one, log in zip(tried, logs_of, strict=True) if log > max(logs_of) - SEEN_TO)
+    begun = next(one for one, log in zip(tried, logs_of, strict=True) if log > max(logs_of) - REFUTED)
     levels = estimate(told, duty.at(past), season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
@@ -221,21 +221,20 @@ class Question:
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
     """Run the logs in question at the machine's knobs, then where each season has moved to; progress as of `fleet`."""
-    own, levels = copy(found.filter), found.levels
-    k = len(own.knobs)
+    own, levels, k = copy(found.filter), found.levels, len(found.filter.knobs)
     data = windows(logs, own.given, own.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:
-        suit(own, data, np.zeros((len(season), len(own.knobs))))
+        suit(own, data, np.zeros((len(season), k)))
     span = _spans(data.time, season)
-    moved = levels.season[:k, :k] + np.diag([k.sd**2 if k.cause else 0.0 for k in own.knobs])
+    moved = levels.season[:k, :k] + np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
     wide = levels.covariance[0, :k, :k] + moved
     step, own.learns, healthy = _pass(progress, "logs in question"), True, np.tile(found.at[0], (len(season), 1))
     if found.share:
         own.least = own.scatter
         loosen(own, data, healthy)
-    z, passed = walk(own, data, season, (found.at[0], wide), step)
+    z, _ = walk(own, data, season, (found.at[0], wide), step)
     nearer = walk(own, data, span, (found.at[0], moved + levels.window), step, found.share)
     at, passed = z[season], own.run(data, z[season])
     if found.share:  # what is not told apart moves along with a change: the filter stays unless the change is large
@@ -304,7 +303,8 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     values = {s.name: np.zeros(n) for s in logs[0].sensors}
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])
-    duty = np.array([found.duty.at(data)[asked.span == k].mean(axis=0) for k in range(n)])
+    duties = found.duty.at(data)
+    duty = np.array([duties[asked.span == k].mean(axis=0) for k in range(n)])
     follow = np.kron(duty, np.eye(len(own.knobs))).reshape(n, len(own.knobs), -1)
     machine, seasons = (follow @ np.linalg.cholesky(C) for C in (found.levels.covariance[0], found.levels.season))
     spans = Logged(own.plant, campaign, own.knobs, told, machine, asked.curves)

@@ -45,7 +45,7 @@ class Logged(Observed):
         curves: Curves,
     ) -> None:
         names = [knob.name for knob in knobs]
-        differing = [*(f"{k}" for k in range(root.shape[2])), "day"]
+        differing = [*map(str, range(root.shape[2])), "day"]
         super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in differing], {}, {})
         self.place, self.curves = {name: k for k, name in enumerate(names)}, curves
         sd = np.array([k.sd for k in knobs])

@@ -13,12 +13,12 @@ from ....scenarios.measured.table import Sensor
 
 #: Samples of a window that count.
 WINDOW = 250
+#: Samples before them in which the filter settles.
+SETTLING = 60
 #: Time in which what warms slowly follows [s].
 HOURS = 5 * 3600.0
 #: Temperature by which a duty is another one [K].
 WARMER = 10.0
-#: Samples before them in which the filter settles.
-SETTLING = 60
 
 
 @dataclass(frozen=True, eq=False)
