@@ -69,7 +69,7 @@ def _in_blocks(own: Filter, data, z: np.ndarray) -> np.ndarray:
     found = np.empty(data.read.shape[1:])
     for block in blocks:
         rows = (z == block).all(axis=1)
-        found[rows] = own.run(data, block[None], free=True, slopes=False).shown[0][rows]
+        found[rows] = own.run(data, block[None], slopes=False).shown[0][rows]
     return found
 
 

@@ -73,7 +73,7 @@ def test_a_foot_that_conducts_more_is_told_by_both(tmp_path: Path) -> None:
     alone, both = (json.loads(called(*asked, *more)) for more in ([], logs))
     p, q = ({tuple(h["causes"]): h["probability"] for h in r["hypotheses"]} for r in (alone, both))
     foot = ("cooling.foundation",)
-    assert p[foot] < 0.4 < 0.5 < q[foot] and q[()] < 0.01 < 0.3 < p[()]  # from the air neither tells it
+    assert p[foot] < 0.4 < 0.5 < q[foot] and q[()] < 0.1 * p[()] and p[()] > 0.3  # from the air neither tells it
     assert both["about"]["logs"] == ["now.csv", "past.csv"] and both["about"]["log_rows"] == 2 * N
     assert any(text.startswith("the logs alone") and "heat into the foundation" in text for text in both["warnings"])
 

@@ -254,7 +254,7 @@ def _run_freely(own: Filter, data: Windows) -> np.ndarray:
     shown, order = np.empty_like(data.read), np.argsort(-_lengths(data), kind="stable")
     for some in np.array_split(order, -(-len(order) // SIDE)):
         z = np.zeros((len(some), len(own.knobs)))
-        shown[some] = own.run(data.some(some), z, free=True, slopes=False).shown
+        shown[some] = own.run(data.some(some), z, slopes=False).shown
     return shown
 
 

@@ -248,7 +248,7 @@ def _gain(known: Fleet, asked: Question, found: Found, spans: Logged, progress: 
         held = np.isin(asked.span, rows)
         after[held] += _moves(spans, kept)[asked.span[held]]
         progress((k + 1) / FOLDS)
-    errors = [own.run(data, z, free=True, slopes=False).error for z in (before, after)]
+    errors = [own.run(data, z, slopes=False).error for z in (before, after)]
     counted = np.isfinite(errors[0]).sum(axis=(0, 1))
     j = min(np.flatnonzero(counted), key=lambda k: read[k].kind != "oil_temp")  # of the oil, where it is read
     s = read[j]
@@ -283,7 +283,7 @@ def _pictures(
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:
         """Measured less simulated, free-running: means of the windows (n, reads)."""
-        return means(own.run(data, known.usual(data) + moves, free=True, slopes=False).error)
+        return means(own.run(data, known.usual(data) + moves, slopes=False).error)
 
     def whole(part: np.ndarray) -> np.ndarray:
         """Past and present in the order of time; the past is as it is."""
@@ -325,7 +325,7 @@ def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[L
     usual = known.usual(whole)
 
     def shown(moves: np.ndarray) -> np.ndarray:
-        return own.run(whole, usual + moves, free=True, slopes=False).shown
+        return own.run(whole, usual + moves, slopes=False).shown
 
     sound = shown(np.zeros(len(own.knobs)))
     for cause in leader.fit.causes:

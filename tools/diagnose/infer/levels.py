@@ -12,11 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..model.logs import Quadratics
+from ..model.windows import at_duty
 
-#: Standard deviations of seasons and windows that are expected before any data.
-SEASON = 0.25
-#: As shares of that of machines.
-WINDOW = 0.25
+#: Standard deviation of seasons that is expected before any data, as a share of that of machines.
+SEASON = 0.15
 #: Of slopes by the duty, a matter of the type: share by which machines differ.
 OWN = 0.3
 #: How many deviations this expectation counts for.
@@ -56,24 +55,33 @@ class Levels:
         return replace(self, mean=mean, covariance=covariance, season=max(share, SAME) * self.season)
 
 
-def first_levels(sd: np.ndarray, slopes: np.ndarray, machines: int) -> Levels:
-    """Levels before any data, by standard deviations of the knobs (k,) and slopes (k d,) between so many machines."""
-    window, machine = np.diag(sd**2), np.diag(np.r_[sd, OWN * slopes] ** 2)
-    root, mean = 1.5**2 * np.diag(np.r_[sd, slopes] ** 2), np.zeros((machines, len(machine)))
+def first_levels(sd: np.ndarray, seasons: np.ndarray, slopes: np.ndarray, machines: int, window: float) -> Levels:
+    """Levels before any data.
+
+    Args:
+        sd, seasons: standard deviations of the knobs between machines, and between seasons of one (k,)
+        slopes: of slopes, of a type (k d,)
+        machines: how many
+        window: of the knobs between windows, as a share of that between machines
+    """
+    season = np.diag(np.r_[seasons, SEASON * OWN * slopes] ** 2)
+    machine, mean = np.diag(np.r_[sd, OWN * slopes] ** 2), np.zeros((machines, len(sd) + len(slopes)))
+    root = 1.5**2 * np.diag(np.r_[sd, slopes] ** 2)
     C = np.tile(root + machine, (machines, 1, 1))
-    return Levels(root, machine, SEASON**2 * machine, WINDOW**2 * window, COUNTS, mean, C, mean[:0], C[:0])
+    return Levels(root, machine, season, np.diag((window * sd) ** 2), COUNTS, mean, C, mean[:0], C[:0])
 
 
-def log_evidence(found: Quadratics, covariance: np.ndarray) -> float:
-    """Of machines by what each says of its knobs, which are normal about the rig file with a covariance (k, k)."""
+def evidence_of(found: Quadratics, duty: np.ndarray, machine: np.ndarray, levels: Levels) -> float:
+    """Log evidence of levels by what windows say of the knobs of their machines."""
+    machines = found.spread(levels.window).by_duty(duty).summed(machine, len(levels.mean))
+    return _log_evidence(found, levels.window) + _log_evidence(machines, levels.root + levels.machine)
+
+
+def _log_evidence(found: Quadratics, covariance: np.ndarray) -> float:
+    """Of what groups say of their knobs, which are normal about the rig file with a covariance (k, k)."""
     A = np.eye(len(covariance)) + found.H @ covariance
     likely = covariance @ np.linalg.solve(A, found.eta[:, :, None])
     return float((found.eta[:, None, :] @ likely).sum() - np.linalg.slogdet(A)[1].sum()) / 2
-
-
-def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:
-    """Knobs (n, k) at duties (n, 1 + d), from their values and slopes (n, k + k d)."""
-    return np.asarray(np.einsum("na,nai->ni", duty, mean.reshape(*duty.shape, mean.shape[1] // duty.shape[1])))
 
 
 def open_at(duty: np.ndarray, covariance: np.ndarray) -> np.ndarray:

@@ -18,12 +18,12 @@ from ..library.knobs import knobs
 from ..model.curves import Curves
 from ..model.entries import Term
 from ..model.logged import Logged
-from ..model.logs import Filter, Quadratics, log_likelihood
+from ..model.logs import Filter, Quadratics
 from ..model.plant import Plant
-from ..model.windows import WINDOW, Duty, Windows, windows
-from .levels import Levels, at_duty, estimate, first_levels, log_evidence
+from ..model.windows import WINDOW, Duty, Windows, at_duty, windows
+from .levels import SEASON, Levels, estimate, evidence_of, first_levels
 from .problem import Look, Problem
-from .walk import PASSES, curves, independent, loosen, suit, walk
+from .walk import PASSES, Places, curves, independent, suit, walk
 from .weigh import Progress
 
 #: State noise [K] of one sample of bodies that no sensor reads.
@@ -41,8 +41,6 @@ FEW = 5
 STIFF = 0.02
 #: Time from the last healthy logs to those in question, where it is no calendar's [s].
 LATER = 14 * 86400.0
-#: Log likelihood of a sample by which a change is so large that it matters where the filter is.
-LARGE = 0.3
 #: How losses, heat paths and instruments follow a feature of the duty otherwise than their laws say, as a share of how
 #: machines differ,
 LAW = 0.15
@@ -52,7 +50,9 @@ INNER = 0.3
 ERR = 0.8
 #: Shares of all this: the first is taken by which healthy logs are not less likely than by another by so many nats.
 FOLLOWED = (1.0, 0.3, 0.1, 0.03)
-REFUTED = 5.0
+REFUTED = 2.0
+#: How windows of a season differ, as shares of how machines do: chosen with them.
+WANDERED = (0.1, 0.03, 0.01)
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -67,7 +67,6 @@ class Fleet:
         levels: what the healthy logs say; that machine is the first
         share: of their samples that counts, 0 without any
         length: samples of a window that count
-        at: knobs of the machines at which they say it (machines, k)
         curves: of its knobs
         duty: what is usual
         seasons: machine and number of a season -> number of that one in the levels, its middle time [s]
@@ -78,7 +77,6 @@ class Fleet:
     levels: Levels
     share: float
     length: int
-    at: np.ndarray
     curves: Curves
     duty: Duty
     seasons: Mapping[tuple[int, int], tuple[int, float]] = field(default_factory=dict)
@@ -89,7 +87,7 @@ class Fleet:
         levels = replace(self.levels, mean=mean, covariance=covariance)
         seasons = {(0, number): known for (one, number), known in self.seasons.items() if one == machine}
         past = self.past.some(np.zeros(0, dtype=int))
-        return replace(self, past=past, levels=levels, at=self.at[[machine]], seasons=seasons)
+        return replace(self, past=past, levels=levels, seasons=seasons)
 
     def does(self, data: Windows) -> np.ndarray:
         """What the machine's knobs do in windows of their duties, in proportion to effects (n, k)."""
@@ -175,29 +173,28 @@ def fleet(
     duty = Duty.of(past, all_sensors.given, all_sensors.read)
     errs = [knob.unit == "K" and knob.sensor in own.read for knob in own.knobs]
     slopes = np.where(errs, ERR, sd * [LAW if knob.cause else INNER for knob in own.knobs])
-    tried = [first_levels(sd, np.tile(share * slopes, len(duty.usual)), 1 + len(siblings)) for share in FOLLOWED]
+    slopes, n = np.tile(slopes, len(duty.usual)), 1 + len(siblings)
+    usual = np.array([k.season or SEASON * k.sd for k in own.knobs])
+    tried = [first_levels(sd, usual, share * slopes, n, windows) for share in FOLLOWED for windows in WANDERED]
     begun = tried[0]
     if not logs:
-        none, still = past.some(np.zeros(0, dtype=int)), np.zeros((1, len(sd)))
-        return Fleet(own, none, begun, 0.0, length, still, Curves({}, still[0]), duty)
+        return Fleet(own, past.some(np.zeros(0, dtype=int)), begun, 0.0, length, Curves({}, np.zeros(len(sd))), duty)
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
     machine_of = keys[:, 0]
     suit(own, past, np.zeros((len(machine), len(sd))))
-    own.learns = True
-    expected = np.zeros(len(sd)), begun.covariance[0, : len(sd), : len(sd)]
-    at, passed = walk(own, past, machine, expected, _pass(progress, "healthy logs"))
+    bent, there = curves(own, past), duty.at(past)
+    places = Places(machine, there, np.zeros((len(machine), len(sd))), bent)
+    z, passed = walk(own, past, places, begun.covariance[0], _pass(progress, "healthy logs"))
     share = independent(passed)
-    bent = curves(own, past)
-    told = passed.told(*bent.at(at[machine])).times(share)
-    of_machines = told.spread(begun.window).by_duty(duty.at(past)).summed(machine, 1 + len(siblings))
-    logs_of = [log_evidence(of_machines, one.root + one.machine) for one in tried]
+    told = places.told(passed, z).times(share)
+    logs_of = [evidence_of(told, there, machine, one) for one in tried]
     begun = next(one for one, log in zip(tried, logs_of, strict=True) if log > max(logs_of) - REFUTED)
-    levels = estimate(told, duty.at(past), season, machine_of, begun)
+    levels = estimate(told, there, season, machine_of, begun)
     times = [float(past.time[season == n].mean()) for n in range(len(keys))]
     seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
-    return Fleet(own, past.some(machine == 0), levels, share, length, at, bent, duty, seasons)
+    return Fleet(own, past.some(machine == 0), levels, share, length, bent, duty, seasons)
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,25 +225,15 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     if not found.share:
         suit(own, data, np.zeros((len(season), k)))
     span = _spans(data.time, season)
-    moved = levels.season[:k, :k] + np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
-    wide = levels.covariance[0, :k, :k] + moved
-    step, own.learns, healthy = _pass(progress, "logs in question"), True, np.tile(found.at[0], (len(season), 1))
+    changed = np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
+    wide = levels.covariance[0, :k, :k] + levels.season[:k, :k] + changed
     if found.share:
         own.least = own.scatter
-        loosen(own, data, healthy)
-    z, _ = walk(own, data, season, (found.at[0], wide), step)
-    nearer = walk(own, data, span, (found.at[0], moved + levels.window), step, found.share)
-    at, passed = z[season], own.run(data, z[season])
-    if found.share:  # what is not told apart moves along with a change: the filter stays unless the change is large
-        still = own.run(data, healthy)
-        if log_likelihood(passed) - log_likelihood(still) < LARGE * data.counts.sum():
-            at, passed = healthy, still
-    if log_likelihood(nearer[1]) - log_likelihood(passed) > data.counts.sum():
-        at, passed = nearer[0][span], nearer[1]  # a change is so large that it matters where the filter is
     bent = found.curves if found.share else curves(own, data)
-    told = passed.told(*bent.at(at)).times(found.share or independent(passed))
-    moves = replace(told, eta=told.eta - (told.H @ found.does(data)[:, :, None])[:, :, 0])
-    return Question(data, season, span, moves, bent.about(levels.mean[0, :k]))
+    places = Places(season, np.ones((len(season), 1)), found.does(data), bent)
+    at, passed = walk(own, data, places, wide, _pass(progress, "logs in question"))
+    told = places.told(passed, at).times(found.share or independent(passed))
+    return Question(data, season, span, told, bent.about(levels.mean[0, :k]))
 
 
 def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:

@@ -3,36 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from ..model.curves import FLATTEST, SEEN, Curves
-from ..model.logs import Filter, Passed, log_likelihood
-from ..model.windows import Windows, of_readings
+from ..model.logs import Filter, Passed, Quadratics, log_likelihood
+from ..model.windows import Windows, at_duty, of_readings
 
 #: Passes over logs at most.
 PASSES = 30
 #: Windows by which the likeliest knobs are sought, at most.
 SOUGHT = 96
-#: Knobs move by so many standard deviations between machines at most,
-FAR = 2.0
+#: Numbers move by so many standard deviations between machines at most,
+FAR = 1.0
 #: and stay where a move makes the logs likelier by less than so much.
 LITTLE = 1.0
 #: They stay the nearer the less likely the logs become: weights of that, in inverse variances between machines.
 DAMPINGS = (0.0, 1.0, 10.0, 100.0, 1000.0)
-#: Passes at first that take every move: what switches makes logs less likely before it makes them likelier.
-FREE = 4
 #: Steps of a sample at most.
 PARTS = 8
 #: Twice as many change what is foreseen by so little of its errors.
 NEAR = 0.1
-#: Windows by which it is told whether logs hold means.
+#: Windows by which the steps of a sample are told.
 TIMED = 24
-#: Share of the range of an input by which one that holds changes, and of the samples in which those that step hold.
-STILL = 0.03
-STEPPING = 0.5
 #: Windows by which it is seen how effects curve, at most.
 WINDOWS = 4
 #: The slope between larger moves is at most so many times that between the smallest; what switches has no curve.
@@ -45,68 +41,77 @@ MEMORY = 36
 CORRELATED = 0.05
 
 
+@dataclass(frozen=True, eq=False)
+class Places:
+    """What the knobs of windows are by numbers of their groups, values and slopes by the duty of what they do.
+
+    Args:
+        group: number of each window's group (n,)
+        duty: of each (n, 1 + d)
+        does: what its knobs do without (n, k)
+        curves: of the knobs
+    """
+
+    group: np.ndarray
+    duty: np.ndarray
+    does: np.ndarray
+    curves: Curves
+
+    def knobs(self, numbers: np.ndarray) -> np.ndarray:
+        """Knobs (n, k) by the numbers of all groups (groups, k + k d)."""
+        return self.curves.back(self.does + at_duty(self.duty, numbers[self.group]))
+
+    def told(self, passed: Passed, z: np.ndarray) -> Quadratics:
+        """What each window says of what its knobs do more, from a pass at knobs (n, k)."""
+        told = passed.told(*self.curves.at(z))
+        return replace(told, eta=told.eta - (told.H @ self.does[:, :, None])[:, :, 0])
+
+
 def walk(
     own: Filter,
     data: Windows,
-    group: np.ndarray,
-    expected: tuple[np.ndarray, np.ndarray],
+    places: Places,
+    expected: np.ndarray,
     progress: Callable[[int, float], None],
-    share: float = 0.0,
 ) -> tuple[np.ndarray, Passed]:
-    """The likeliest knobs of groups of windows: passes, each where the one before points to, until they stay there.
+    """The likeliest numbers of groups of windows: passes, each where the one before points to, until they stay there.
 
     Args:
-        own: the filter; its scatter is fitted where it learns
+        own: the filter; its scatter is fitted
         data: the windows
-        group: number of the group of each
-        expected: where all groups begin and are expected (k,), and their covariance about it (k, k)
+        places: of their knobs
+        expected: covariance of the numbers of each group about nought (k + k d, k + k d)
         progress: told of the number of a pass and the share of it that is done
-        share: of the samples that counts; 0 for what each pass shows
 
     Returns:
-        knobs (groups, k), and the pass there
+        knobs of the windows (n, k), and the pass there
     """
-    begun, known, sd = expected[0], np.linalg.inv(expected[1]), np.array([k.sd for k in own.knobs])
-    z, places = np.tile(begun, (int(group.max()) + 1, 1)), np.linspace(0, len(group) - 1, min(len(group), SOUGHT))
-    some = places.astype(int)
-    few, of, whole = data.some(some), group[some], len(group) / len(some)
+    known, sd, many = np.linalg.inv(expected), np.sqrt(np.diag(expected)), int(places.group.max()) + 1
+    some = np.linspace(0, len(places.group) - 1, min(len(places.group), SOUGHT)).astype(int)
+    of = replace(places, group=places.group[some], duty=places.duty[some], does=places.does[some])
+    few, whole = data.some(some), len(places.group) / len(some)
 
-    def value(passed: Passed, z: np.ndarray) -> float:
-        return counted * log_likelihood(passed) - float(np.einsum("ni,ij,nj", z - begun, known, z - begun)) / 2
+    def value(passed: Passed, y: np.ndarray) -> float:
+        return counted * log_likelihood(passed) - float(np.einsum("ni,ij,nj", y, known, y)) / 2
 
-    best = -np.inf, z
+    y = np.zeros((many, len(sd)))
     for n in range(PASSES):
-        passed = own.run(few, z[of], progress=partial(progress, n))
-        said, scatter = passed.told(z[of]), own.scatter
-        counted = whole * (share or min(independent(passed), 1.0))
-        if own.learns:
-            own.scatter = _scatter(own, passed)
-            passed = own.run(few, z[of], slopes=False)
-        told, least = said.times(counted).summed(of, len(z)), value(passed, z)
-        H = told.H + known
-        uphill = (told.eta - (H @ z[:, :, None])[:, :, 0] + begun @ known)[:, :, None]
-        best = max(best, (least, z), key=lambda tried: tried[0])
-        free = not own.learns and n < FREE
-        if not own.learns and n == FREE and least < best[0]:
-            z = best[1]
-            continue
+        z, scatter = of.knobs(y), own.scatter
+        passed = own.run(few, z, progress=partial(progress, n))
+        counted, own.scatter = whole * min(independent(passed), 1.0), _scatter(own, passed)
+        told = of.told(passed, z).times(counted).by_duty(of.duty).summed(of.group, many)
+        H, least = told.H + known, value(replace(passed, variance=own.scatter**2), y)
+        uphill = (told.eta - (H @ y[:, :, None])[:, :, 0])[:, :, None]
         for damping in DAMPINGS:
             step = np.linalg.solve(H + damping * np.diag(sd**-2), uphill)[:, :, 0].clip(-FAR * sd, FAR * sd)
-            gained = value(own.run(few, (z + step)[of], slopes=False), z + step) - least
-            if free or gained >= 0:
+            gained = value(own.run(few, of.knobs(y + step), slopes=False), y + step) - least
+            if gained >= 0:
                 break
-        if n + 1 == PASSES or (not free and gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
+        if n + 1 == PASSES or (gained < LITTLE * counted and np.allclose(scatter, own.scatter, rtol=NEAR)):
             break
-        z = z + step if free or gained > 0 else z
-    return z, own.run(data, z[group])
-
-
-def loosen(own: Filter, data: Windows, z: np.ndarray) -> None:
-    """Let the scatter be as large as errors are where the knobs have not moved: far ones would not count at all."""
-    for _ in range(PASSES):
-        before, own.scatter = own.scatter, _scatter(own, own.run(data, z, slopes=False))
-        if np.allclose(before, own.scatter, rtol=NEAR):
-            break
+        y = y + step if gained > 0 else y
+    z = places.knobs(y)
+    return z, own.run(data, z)
 
 
 def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
@@ -125,11 +130,8 @@ def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
             own.parts //= 2
             break
         found = finer
-    changes, whole = np.abs(np.diff(data.given, axis=1)), np.ptp(data.given[data.there], axis=0)
-    if (changes <= STILL * whole).all(axis=2)[data.there[:, 1:]].mean() >= STEPPING:
-        # where inputs change all the time a wider error of each would only hide what else is wrong
-        logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
-        own.moments = logs[1] > logs[0]
+    logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
+    own.moments = logs[1] > logs[0]
 
 
 def _scatter(own: Filter, passed: Passed) -> np.ndarray:

@@ -33,6 +33,7 @@ class Knob:
         unit: of z; "1" for the logarithm of a factor
         usual: size of the cause that is usual [unit], of powers in the table as a share of the typical loss
         sd: standard deviation between machines of one type; in the same way
+        season: standard deviation between seasons of one machine, where it is known [unit]
         scaled: parameters multiplied by exp(exponent z): path -> exponent
         shifted: parameters to which z is added [SI]
         sensor, gain: a sensor that shows z too much; with `gain` exp(z) times what is there
@@ -44,6 +45,7 @@ class Knob:
     unit: str = "1"
     usual: float = 0.3
     sd: float = 0.3
+    season: float = 0.0
     scaled: Mapping[str, float] = field(default_factory=dict)
     shifted: tuple[str, ...] = ()
     sensor: str = ""
@@ -141,7 +143,7 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
         if kind and kind.unit == "K":
             id = f"sensor.{s.kind}.offset"
             doc = f"The {kind.words} reads too high or too low."
-            yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, sensor=s.name)
+            yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, s.offset_sd / 2, sensor=s.name)
         elif s.kind in GAINS:
             doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
             yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)

@@ -5,11 +5,10 @@
 
 /* n windows of L samples with k knobs; derivatives only where k > 0. */
 typedef struct {
-  whole n, L, k, free;                       /* whether samples that count do not correct */
-  whole moments;                             /* whether readings are of the end of a sample, and no means over it */
+  whole n, L, k;
   whole parts;                               /* steps of a sample */
   const whole *length;                       /* of each window (n) */
-  const unsigned char *counts;               /* (n, L) */
+  const unsigned char *counts, *ends;        /* whether a sample counts, else it corrects; and ends a piece (n, L) */
   const double *given, *read;                /* (n, L, given), (n, L, shown), NaN where missing */
   const double *p, *dp;                      /* (n, np), (n, plant's knobs, k) */
   const double *factor, *shift;              /* input = factor * given - shift (n, given) */
@@ -19,11 +18,12 @@ typedef struct {
   const whole *input_of, *gain;              /* input that a knob moves or -1, and whether it moves by a factor (k) */
   const whole *u_at, *state_of;              /* place of each given input (given); state of each reading or -1 (shown) */
   const double *x0, *z0, *P0, *Q, *scatter;  /* (n, nx), (nz), diagonals (nx), (nx); standard deviations (shown) */
+  const double *spread;                      /* standard deviations of means over pieces (shown) */
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
 } Logs;
 
 /* (n, k), (n, k, k); the others (n, L, shown). */
-typedef struct { double *slope, *curvature, *error, *variance, *shown; } Told;
+typedef struct { double *slope, *curvature, *error, *shown; } Told;
 
 #define LOG_GAMMA 0.29289321881345247560
 /* Newton's corrections at most, the last of them over the nominals, the longest one; a shorter one from some on, as a
@@ -36,13 +36,12 @@ typedef struct {
   const Logs *logs;
   whole t, nx, nw, reads, columns;          /* columns: k knobs, then nx states, then the noise of inputs */
   lanes *factor, *shift, *scaled, *offset, *dp;
-  lanes *early;                             /* states at the end, less those with the inputs of the sample before */
-  double first;                             /* weight of the first stage in what is read */
-  lanes *w[3], *LU[2], *base, *begin;       /* at the begin of a step and of both its stages; at that of the sample */
+  lanes *w[3], *LU[2], *base;               /* at the begin of a step and of both its stages */
   whole *pivot[2];
   lanes *y[2], *d[2], *by[2];               /* readings, and derivatives of unknowns and of readings of both stages */
   lanes *shown, *shown_by, *turn;           /* of the sample: what is read, its derivatives; of states before the step */
-  lanes *own, *S, *S_new, *P, *AP, *CP, *cross, *gain, *V, *e, *e_V, *variance;
+  lanes *S, *S_new, *P, *AP, *CP, *cross, *gain, *V, *e, *variance;
+  lanes *many, *sum, *sum_by;               /* of a piece: readings, and sums of their errors and derivatives */
   whole *pivot_V;
   lanes *slope, *curvature;
 } Follow;
@@ -133,38 +132,34 @@ static void log_slopes(Follow *F, double step, lanes h, double share) {
   }
   for (whole c = 0; c < F->columns; c++) memcpy(F->turn + c * nx, F->d[1] + c * nw, nx * sizeof(lanes));
   for (whole i = 0; i < F->columns * F->reads; i++)
-    F->shown_by[i] += share * (F->first * F->by[0][i] + (1 - F->first) * F->by[1][i]);
+    F->shown_by[i] += share * ((1 - LOG_GAMMA) * F->by[0][i] + LOG_GAMMA * F->by[1][i]);
 }
 
 /* Covariance of the errors with its factors, gain, covariance after the sample. A walk that gains Q in a sample has Q/3
-   in the mean over it, and Q/2 in common with its end. Inputs of moments come up to a sample here early or late. */
+   in the mean over it, and Q/2 in common with its end. */
 static void log_update(Follow *F) {
   const Logs *D = F->logs;
   const whole nx = F->nx, m = F->reads;
   const lanes *C = F->shown_by + D->k * m, *A = F->d[1] + D->k * F->nw, *B = A + nx * F->nw, *E = C + nx * m;
   const whole given = F->runs.plant->given;
-  const double mean = D->moments ? 1 : 1.0 / 3, common = D->moments ? 1 : 0.5;
   int fine[LANES] = {0};
-  for (whole i = 0; i < nx; i++)
-    for (whole j = 0; j < nx; j++) F->P[j * nx + i] += F->early[i] * F->early[j] / 3;
   product(F->CP, C, F->P, m, nx, nx, m, nx);
   product(F->AP, A, F->P, nx, nx, nx, F->nw, nx);
   for (whole i = 0; i < m; i++)
     for (whole j = 0; j < m; j++) {
-      lanes sum = lanes_all(D->state_of[i] >= 0 && D->state_of[i] == D->state_of[j] ? mean * D->Q[D->state_of[i]] : 0.0);
+      lanes sum = lanes_all(D->state_of[i] >= 0 && D->state_of[i] == D->state_of[j] ? D->Q[D->state_of[i]] / 3 : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->CP[s * m + i] * C[s * m + j];
       for (whole g = 0; g < given; g++) sum += E[g * m + i] * E[g * m + j];
       F->V[i * m + j] = i == j ? sum + F->variance[i] : sum;
     }
   for (whole i = 0; i < nx; i++) {
     for (whole j = 0; j < m; j++) {
-      lanes sum = lanes_all(D->state_of[j] == i ? common * D->Q[i] : 0.0);
+      lanes sum = lanes_all(D->state_of[j] == i ? D->Q[i] / 2 : 0.0);
       for (whole s = 0; s < nx; s++) sum += F->AP[s * nx + i] * C[s * m + j];
       for (whole g = 0; g < given; g++) sum += B[g * F->nw + i] * E[g * m + j];
       F->cross[i * m + j] = F->gain[i * m + j] = sum;
     }
   }
-  for (whole i = 0; i < m; i++) F->own[i] = F->V[i * m + i];
   factored(F->V, F->pivot_V, m, fine);
   for (whole i = 0; i < nx; i++) solved(F->V, F->pivot_V, m, F->gain + i * m);
   for (whole i = 0; i < nx; i++)
@@ -182,35 +177,35 @@ static void log_update(Follow *F) {
     }
 }
 
-/* Adds a sample: a multivariate t, as least squares that are weighted anew at every pass. by_z (reads, k). */
-static void log_count(Follow *F, const lanes *by_z, lanes counts) {
+/* Adds the errors of a sample to those of its piece, and behind it their means: each a t, as least squares that are weighted
+   anew at every pass. by_z (reads, k). */
+static void log_count(Follow *F, const lanes *by_z, lanes counts, lanes ends) {
   const whole m = F->reads, k = F->logs->k;
   const double tails = *F->logs->tails;
-  lanes distance = lanes_all(0.0);
-  memcpy(F->e_V, F->e, m * sizeof *F->e);
-  solved(F->V, F->pivot_V, m, F->e_V);
-  for (whole i = 0; i < m; i++) distance += F->e[i] * F->e_V[i];
-  const lanes weight = (tails + m) / (tails + distance) * counts;
-  for (whole c = 0; c < k; c++) {
-    lanes *mirrored = F->own;
-    memcpy(mirrored, by_z + c * m, m * sizeof *mirrored);
-    solved(F->V, F->pivot_V, m, mirrored);
-    for (whole i = 0; i < m; i++) F->slope[c] += lanes_only(counts != 0, weight * by_z[c * m + i] * F->e_V[i]);
-    for (whole b = 0; b < k; b++)
-      for (whole i = 0; i < m; i++)
-        F->curvature[c * k + b] += lanes_only(counts != 0, weight * mirrored[i] * by_z[b * m + i]);
+  for (whole i = 0; i < m; i++) {
+    const lanes there = lanes_only(F->variance[i] < MISSING, counts);
+    const double sd = F->logs->spread[i];
+    F->many[i] += there, F->sum[i] += there * F->e[i];
+    for (whole c = 0; c < k; c++) F->sum_by[i * k + c] += lanes_only(there != 0, by_z[c * m + i]);
+    if (!lanes_any(lanes_where(ends != 0))) continue;
+    const lanes n = lanes_only(ends != 0, F->many[i]), one = n + lanes_only(n == 0, lanes_all(1.0));
+    const lanes e = F->sum[i] / one / sd, weight = (tails + 1) / (tails + e * e) * lanes_only(n != 0, lanes_all(1.0));
+    for (whole c = 0; c < k; c++) {
+      const lanes by = F->sum_by[i * k + c] / one / sd;
+      F->slope[c] += weight * by * e;
+      for (whole b = 0; b < k; b++) F->curvature[c * k + b] += weight * by * F->sum_by[i * k + b] / one / sd;
+    }
+    F->many[i] -= n, F->sum[i] -= lanes_only(n != 0, F->sum[i]);
+    for (whole c = 0; c < k; c++) F->sum_by[i * k + c] -= lanes_only(n != 0, F->sum_by[i * k + c]);
   }
 }
 
 /* Correction of the unknowns, of the derivatives of the states, and what it says. */
-static void log_correct(Follow *F, const Told *told, lanes corrects, lanes counts) {
+static void log_correct(Follow *F, lanes corrects, lanes counts, lanes ends) {
   const Logs *D = F->logs;
   const whole nx = F->nx, m = F->reads, k = D->k;
   lanes *by_z = F->by[0];
-  log_update(F);
-  EACH if (F->runs.on[l])
-    for (whole i = 0; i < m; i++)
-      told->variance[(F->runs.run[l] * D->L + F->t) * m + i] = F->own[i][l];
+  if (lanes_any(lanes_where(corrects != 0))) log_update(F);
   for (whole i = 0; i < nx * m; i++) F->gain[i] = lanes_only(corrects != 0, F->gain[i]);
   product(by_z, F->shown_by + k * m, F->S, m, nx, k, m, nx);
   product(F->S_new, F->d[1] + k * F->nw, F->S, nx, nx, k, F->nw, nx);
@@ -227,15 +222,15 @@ static void log_correct(Follow *F, const Told *told, lanes corrects, lanes count
   }
   for (whole i = 0; i < nx; i++)
     for (whole r = 0; r < m; r++) F->w[0][i] += F->gain[i * m + r] * F->e[r];
-  log_count(F, by_z, counts);
+  log_count(F, by_z, counts, ends);
 }
 
 /* The inputs of a sample. */
-static void log_given(Follow *F, whole t) {
+static void log_given(Follow *F) {
   Runs *R = &F->runs;
   const Logs *D = F->logs;
   for (whole g = 0; g < R->plant->given; g++) {
-    EACH R->u[D->u_at[g]][l] = D->given[(R->run[l] * D->L + t) * R->plant->given + g];
+    EACH R->u[D->u_at[g]][l] = D->given[(R->run[l] * D->L + F->t) * R->plant->given + g];
     R->u[D->u_at[g]] = F->factor[g] * R->u[D->u_at[g]] - F->shift[g];
   }
 }
@@ -251,8 +246,8 @@ static void log_step(Follow *F, lanes h) {
   }
 }
 
-/* All steps of a sample with the inputs of one, from its begin; with derivatives on demand. */
-static void log_steps(Follow *F, whole inputs, int slopes) {
+/* All steps of a sample from its begin; with derivatives on demand. */
+static void log_steps(Follow *F, int slopes) {
   const Logs *D = F->logs;
   const whole m = F->reads, nx = F->nx;
   const double step = *D->step / D->parts;
@@ -260,12 +255,11 @@ static void log_steps(Follow *F, whole inputs, int slopes) {
   memset(F->shown, 0, m * sizeof(lanes)), memset(F->shown_by, 0, F->columns * m * sizeof(lanes));
   for (whole c = 0; c < F->columns; c++)
     for (whole i = 0; i < nx; i++) F->turn[c * nx + i] = lanes_all((double)(c - D->k == i));
-  log_given(F, inputs);
-  memcpy(F->w[0], F->begin, F->nw * sizeof(lanes));
+  log_given(F);
   for (whole part = 1; part <= D->parts; part++) {
-    const double share = D->moments ? part == D->parts : 1.0 / D->parts;
+    const double share = 1.0 / D->parts;
     log_step(F, h);
-    for (whole i = 0; i < m; i++) F->shown[i] += share * (F->first * F->y[0][i] + (1 - F->first) * F->y[1][i]);
+    for (whole i = 0; i < m; i++) F->shown[i] += share * ((1 - LOG_GAMMA) * F->y[0][i] + LOG_GAMMA * F->y[1][i]);
     if (slopes) log_slopes(F, step, h, share);
     memcpy(F->w[0], F->w[2], F->nw * sizeof(lanes));
   }
@@ -280,23 +274,16 @@ static void log_sample(Follow *F, const Told *told) {
   Runs *R = &F->runs;
   const Logs *D = F->logs;
   const whole m = F->reads;
-  lanes counts = lanes_all(0.0), corrects = counts;
+  lanes counts = lanes_all(0.0), corrects = counts, ends = counts;
   whole at[LANES];
   EACH {
     at[l] = R->run[l] * D->L + F->t;
     counts[l] = R->on[l] && D->counts[at[l]];
-    corrects[l] = R->on[l] && !(D->free && D->counts[at[l]]);
+    corrects[l] = R->on[l] && !D->counts[at[l]];
+    ends[l] = R->on[l] && D->ends[at[l]];
   }
-  memset(F->early, 0, F->nx * sizeof *F->early);
-  memcpy(F->begin, F->w[0], F->nw * sizeof(lanes));
-  const int halved = D->moments && F->t % 2; /* the second half of a sample: the first has the inputs before */
-  if (halved) {
-    log_steps(F, F->t - 1, 0);
-    for (whole i = 0; i < F->nx; i++) F->early[i] = -F->w[2][i];
-  }
-  const int slopes = lanes_any(lanes_where(corrects != 0));
-  log_steps(F, F->t, slopes);
-  for (whole i = 0; i < F->nx && halved; i++) F->early[i] += F->w[2][i];
+  const int slopes = D->k || lanes_any(lanes_where(corrects != 0));
+  log_steps(F, slopes);
   for (whole i = 0; i < m; i++) {
     const lanes y = F->shown[i] + F->offset[i];
     EACH {
@@ -305,7 +292,7 @@ static void log_sample(Follow *F, const Told *told) {
       if (R->on[l]) told->error[at[l] * m + i] = F->e[i][l], told->shown[at[l] * m + i] = y[l];
     }
   }
-  if (slopes) log_correct(F, told, corrects, counts);
+  if (slopes) log_correct(F, corrects, counts, ends);
 }
 
 static void log_placed(Follow *F, Room *room) {
@@ -318,7 +305,7 @@ static void log_placed(Follow *F, Room *room) {
   R->LU = vectors(room, nw * nw), R->pivot = bytes(room, pivots);
   F->factor = vectors(room, P->given), F->shift = vectors(room, P->given), F->offset = vectors(room, m);
   F->scaled = vectors(room, m);
-  F->early = vectors(room, nx), F->begin = vectors(room, nw), F->turn = vectors(room, F->columns * nx);
+  F->turn = vectors(room, F->columns * nx);
   F->shown = vectors(room, m), F->shown_by = vectors(room, F->columns * m);
   F->dp = vectors(room, P->knobs * k), F->base = vectors(room, nx);
   for (int stage = 0; stage < 3; stage++) F->w[stage] = vectors(room, nw);
@@ -326,7 +313,8 @@ static void log_placed(Follow *F, Room *room) {
     F->LU[stage] = vectors(room, nw * nw), F->pivot[stage] = bytes(room, pivots), F->y[stage] = vectors(room, m);
     F->d[stage] = vectors(room, nw * F->columns), F->by[stage] = vectors(room, m * F->columns);
   }
-  F->own = vectors(room, m), F->e = vectors(room, m), F->e_V = vectors(room, m), F->variance = vectors(room, m);
+  F->e = vectors(room, m), F->variance = vectors(room, m);
+  F->many = vectors(room, m), F->sum = vectors(room, m), F->sum_by = vectors(room, m * k);
   F->S = vectors(room, nx * k), F->S_new = vectors(room, nx * k), F->P = vectors(room, nx * nx);
   F->AP = vectors(room, nx * nx), F->CP = vectors(room, m * nx), F->cross = vectors(room, nx * m);
   F->gain = vectors(room, nx * m), F->V = vectors(room, m * m);
@@ -347,6 +335,8 @@ static void log_begun(Follow *F, whole from, whole to) {
   for (whole i = F->nx; i < F->nw; i++) F->w[0][i] = lanes_all(D->z0[i - F->nx]);
   memset(F->P, 0, F->nx * F->nx * sizeof(lanes)), memset(F->S, 0, F->nx * D->k * sizeof(lanes));
   for (whole i = 0; i < F->nx; i++) F->P[i * F->nx + i] = lanes_all(D->P0[i]);
+  memset(F->many, 0, F->reads * sizeof(lanes)), memset(F->sum, 0, F->reads * sizeof(lanes));
+  memset(F->sum_by, 0, F->reads * D->k * sizeof(lanes));
   memset(F->slope, 0, D->k * sizeof(lanes)), memset(F->curvature, 0, D->k * D->k * sizeof(lanes));
 }
 
@@ -356,8 +346,7 @@ __attribute__((visibility("default"))) int follow(const Plant *plant, const Logs
   const whole row = 0;
   const Duty one = {.S = 1, .H = 1, .row = &row};
   Follow F = {.runs = {.plant = plant, .duty = &one}, .logs = logs, .nx = plant->nx, .nw = plant->nw,
-              .reads = plant->shown, .columns = logs->k + plant->nx + plant->given,
-              .first = logs->moments ? 0 : 1 - LOG_GAMMA};
+              .reads = plant->shown, .columns = logs->k + plant->nx + plant->given};
   Room room = {0};
   void *block;
   log_placed(&F, &room);

@@ -1,9 +1,8 @@
-"""A rig run over logs: a Kalman filter over its equations, with exact sensitivities, many windows side by side.
+"""A rig run over logs, with exact sensitivities, many windows side by side.
 
-The states of the machine drift by a random walk of their own (state noise), so that what the model misses in one sample
-does not count again in the next: the one-step prediction errors are what is left to explain. Without correction the
-same steps run the model freely. Inputs are means over a sample and hold during it; readings are means over it as well.
-Or both are read at moments: half a sample has the inputs before, half those at its end, where they are read.
+A Kalman filter finds the states at the begin of a window: there they drift by a random walk of their own (state noise).
+Then the rig runs freely. Inputs are means over a sample and hold during it; readings are means over it as well, and
+their errors count as means over about half an hour.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from ....fmu.batch_library import share_rows
 from ....scenarios.measured.table import Sensor
 from ..library.knobs import Knob
 from .plant import Plant, library, record
-from .windows import Windows, means
+from .windows import Windows, by_piece, means
 
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
@@ -27,12 +26,12 @@ UNREAD = 6.0
 #: Scatter of a reading about the model before it is estimated, in repeatabilities.
 SCATTER = 3.0
 #: The least it is.
-LEAST = 0.3
+LEAST = 1.0
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
 #: What a pass tells of each sample.
-ROWS = ("error", "variance", "shown")
+ROWS = ("error", "shown")
 #: Windows that a thread takes at a time, those that go side by side; and those between two words on progress.
 SIDE = 8
 BLOCK = 64
@@ -76,8 +75,8 @@ class Passed:
 
     Args:
         slope, curvature: of the log likelihood, by the knobs (N, k), (N, k, k), the latter positive
-        error: prediction errors (N, L, reads), NaN where nothing is read or counts
-        variance: of them (N, L, reads)
+        error: prediction errors, means over pieces of windows (N, pieces, reads), NaN where nothing is read or counts
+        variance: of them (reads,)
         shown: what the model shows (N, L, reads)
     """
 
@@ -112,16 +111,14 @@ class Filter:
     def __init__(
         self, plant: Plant, knobs: Sequence[Knob], given: Sequence[Sensor], read: Sequence[Sensor], drift: np.ndarray
     ) -> None:
-        self.plant, self.knobs, self.drift = plant, tuple(knobs), drift
+        self.plant, self.knobs = plant, tuple(knobs)
         self.given, self.read = tuple(s.name for s in given), tuple(s.name for s in read)
         #: Repeatability of the inputs (given,) and of the readings (reads,).
         self.given_sd, self.read_sd = (np.array([s.repeat_sd for s in sensors]) for sensors in (given, read))
-        #: Scatter of each reading about the model (reads,).
+        #: Scatter of each reading about the model, of means over pieces (reads,).
         self.scatter = SCATTER * self.read_sd
         #: The least it may be (reads,).
         self.least = LEAST * self.read_sd
-        #: Whether it is to be fitted to logs.
-        self.learns = False
         #: Whether what logs hold was read at moments, and is no mean over a sample.
         self.moments = False
         #: Steps of a sample.
@@ -129,6 +126,9 @@ class Filter:
         #: State that each sensor reads, -1 where it reads something else.
         names = [q.name for q in plant.flat.states]
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
+        #: Standard deviation that the random walk of each state gains in one sample [K] (nx,).
+        self.noise, own = drift.copy(), self.state_of >= 0
+        self.noise[self.state_of[own]] = FOLLOWS * SCATTER * self.read_sd[own]
 
     def settings(self, z: np.ndarray) -> dict[str, np.ndarray]:
         """What knobs z (N, k), those of each window, set.
@@ -163,13 +163,6 @@ class Filter:
         (factor, scaled), (shift, offset) = (np.split(both, [g], axis=1) for both in (gain, moved))
         return {"p": p, "dp": dp, "factor": factor, "shift": shift, "scaled": scaled, "offset": offset, "by": by[g:]}
 
-    @property
-    def noise(self) -> np.ndarray:
-        """Standard deviation that each state's random walk gains in one sample [K] (nx,)."""
-        found, read = self.drift.copy(), self.state_of >= 0
-        found[self.state_of[read]] = FOLLOWS * self.scatter[read]
-        return found
-
     def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """States at the start (N, nx), and their standard deviations (nx,)."""
         x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
@@ -182,7 +175,7 @@ class Filter:
         for j, state in enumerate(self.state_of):
             if state >= 0:
                 x[:, state] = np.where(np.isfinite(first[:, j]), first[:, j], x[:, state])
-                sd[state] = self.scatter[j]
+                sd[state] = SCATTER * self.read_sd[j]
         return x, sd
 
     def run(
@@ -190,7 +183,6 @@ class Filter:
         data: Windows,
         z: np.ndarray,
         *,
-        free: bool = False,
         slopes: bool = True,
         progress: Callable[[float], None] | None = None,
     ) -> Passed:
@@ -198,26 +190,24 @@ class Filter:
 
         Args:
             data, z: windows, and the knobs of each (N, k)
-            free: whether samples that count do not correct the states; no slopes then
             slopes: whether slope and curvature are wanted
             progress: called with the share done
         """
         order = np.argsort(-data.there.sum(axis=1), kind="stable")  # windows of about one length go side by side
-        data = data.some(order).halved() if self.moments else data.some(order)
-        (n, length, _), k = data.read.shape, z.shape[1] if slopes and not free else 0
+        data = data.some(order).paired() if self.moments else data.some(order)
+        (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
         known = self.settings(z[order])
         known |= {"dp": known["dp"][:, :, :k], "by": known["by"][:, :k]}
         x, sd = self.start(data, known["offset"])
-        lengths = data.there.sum(axis=1)
+        lengths, piece = data.there.sum(axis=1), data.piece
         logs = record(
             n=n,
             L=length,
             k=k,
-            free=int(free),
-            moments=int(self.moments),
             parts=self.parts,
             length=lengths,
             counts=data.counts,
+            ends=data.counts & (np.diff(piece, axis=1, append=-1) != 0),
             given=data.given,
             read=data.read,
             **known,
@@ -230,8 +220,9 @@ class Filter:
             x0=x,
             z0=self.plant.flat.starts("algebraic"),
             P0=sd**2,
-            Q=self.noise**2 / (2 if self.moments else 1),
-            scatter=self.scatter,
+            Q=self.noise**2,
+            scatter=SCATTER * self.read_sd,
+            spread=self.scatter,
             step=np.array([data.step]),
             tails=np.array([TAILS]),
         )
@@ -247,9 +238,9 @@ class Filter:
             share_rows(followed, last - first, SIDE, 0)
             if progress:
                 progress(float(lengths[:last].sum() / lengths.sum()))
-        found["error"][~(data.counts[:, :, None] & np.isfinite(data.read))] = np.nan
-        back, ends = np.argsort(order), slice(1, None, 2) if self.moments else slice(None)
-        return Passed(**{name: a[back, ends] if name in ROWS else a[back] for name, a in found.items()})
+        error = by_piece(piece, np.where(data.counts[:, :, None] & np.isfinite(data.read), found.pop("error"), np.nan))
+        found, error = {name: a[np.argsort(order)] for name, a in found.items()}, error[np.argsort(order)]
+        return Passed(error=error, variance=self.scatter**2, **found)
 
 
 def log_likelihood(passed: Passed) -> float:

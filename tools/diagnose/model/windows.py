@@ -13,8 +13,10 @@ from ....scenarios.measured.table import Sensor
 
 #: Samples of a window that count.
 WINDOW = 250
-#: Samples before them in which the filter settles.
+#: Samples before them in which the filter settles; longer free runs would hang on what no sensor reads, a foundation.
 SETTLING = 60
+#: Length of a piece over which errors are averaged, about [s]: the model need not follow what is faster.
+PIECE = 1800.0
 #: Time in which what warms slowly follows [s].
 HOURS = 5 * 3600.0
 #: Temperature by which a duty is another one [K].
@@ -30,7 +32,7 @@ class Windows:
         read: readings (N, L, reads), NaN where missing
         slow: means of the readings until then, of the last hours above all (N, L, reads)
         there: whether a sample is there (N, L)
-        counts: whether it counts, the settling ones do not (N, L)
+        counts: whether it counts, those before do not (N, L)
         machine: number of the log of each window (N,)
         time: middle of each window [s] (N,)
         rows: row of each sample in its log (N, L), -1 where there is none
@@ -51,13 +53,21 @@ class Windows:
         """Some of the windows (N,) bool or numbers."""
         return replace(self, **{f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "step"})
 
-    def halved(self) -> Windows:
-        """The same with each sample as two: the inputs before, without a reading, and those at its end."""
-        names = ("given", "read", "there", "counts", "rows")
-        found = replace(self, step=self.step / 2, **{name: np.repeat(getattr(self, name), 2, axis=1) for name in names})
-        found.given[:, 2::2] = self.given[:, :-1]
-        found.read[:, ::2] = np.nan
-        return found
+    def paired(self) -> Windows:
+        """The same of what was read at moments: means of neighbours, which are means over the time between them."""
+        both = ((a[:, 1:] + a[:, :-1]) / 2 for a in (self.given, self.read))
+        given, read = (
+            np.concatenate([a[:, :1], m], axis=1) for a, m in zip((self.given, self.read), both, strict=True)
+        )
+        return replace(self, given=given, read=read)
+
+    @property
+    def piece(self) -> np.ndarray:
+        """Number of the piece of its window in which each sample counts (N, L); -1 for others."""
+        many = np.maximum(self.counts.sum(axis=1, keepdims=True), 1)
+        pieces = np.clip(np.round(many * self.step / PIECE), 1, many)
+        before = np.cumsum(self.counts, axis=1) - 1
+        return np.where(self.counts, before * pieces // many, -1).astype(int)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +118,7 @@ def windows(
     n, longest = len(pieces), max(len(rows) for _, _, rows, _ in pieces)
     u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
     slow, courses = y.copy(), [{name: _slow(log, name) for name in read if name in log.values} for log in logs]
-    counts, there = np.zeros((n, longest), dtype=bool), np.zeros((n, longest), dtype=bool)
+    counts, there = np.zeros((2, n, longest), dtype=bool)
     at = np.full((n, longest), -1)
     for i, (number, log, rows, skipped) in enumerate(pieces):
         m = len(rows)
@@ -133,8 +143,8 @@ def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[n
             continue
         for part in np.array_split(rows, max(round(len(rows) / length), 1)):
             begin = max(part[0] - settling, rows[0])
-            settled = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
-            yield np.arange(begin, part[-1] + 1), settled
+            skipped = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
+            yield np.arange(begin, part[-1] + 1), skipped
 
 
 def _slow(log: Log, name: str) -> np.ndarray:
@@ -158,6 +168,17 @@ def means(values: np.ndarray) -> np.ndarray:
     """Means of windows (n, L, reads) over their samples (n, reads), NaN where a reading has none."""
     count = np.isfinite(values).sum(axis=1)
     return np.asarray(np.nansum(values, axis=1) / np.where(count > 0, count, np.nan))
+
+
+def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:
+    """Knobs (n, k) at duties (n, 1 + d), from their values and slopes (n, k + k d)."""
+    return np.asarray(np.einsum("na,nai->ni", duty, mean.reshape(*duty.shape, mean.shape[1] // duty.shape[1])))
+
+
+def by_piece(piece: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Means of windows (n, L, reads) over each of their pieces (n, pieces, reads), NaN where a reading has none."""
+    there = [np.where(piece[:, :, None] == k, values, np.nan) for k in range(int(piece.max(initial=0)) + 1)]
+    return np.stack([means(one) for one in there], axis=1)
 
 
 def of_readings(statistic: Callable[[np.ndarray], float], values: np.ndarray) -> np.ndarray:
