@@ -19,8 +19,9 @@ import numpy as np
 
 from ..model.errors import DataError, Problems, ScenarioError, suggestion, visible
 from ..model.files import tables
-from ..model.units import parse_number, spell_unit, to_si
-from .document import read_text
+from ..model.units import kind_of, parse_number, spell_unit, to_si
+from .csv_cells import fold, is_nothing, ragged_rows, two_readings
+from .document import WIDE, read_text
 
 #: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
 ACCOUNTS = ("row", "status", "iterations", "energy_residual [1]", "outside [1]")
@@ -31,12 +32,11 @@ SHOWN = 30
 ENCODINGS = ("utf-8-sig", "cp1252")
 #: What may separate columns.
 SEPARATORS = ",;\t"
+#: A first line by which Excel is told what separates columns.
+_TOLD = re.compile(r"\"?sep=(.)", re.IGNORECASE)
 
 #: A number with a decimal comma, in a table whose columns no commas separate.
 _COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
-#: A number whose point or comma may separate thousands, and one where it separates decimals.
-_GROUP = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}")
-_DECIMAL = re.compile(r"[+-]?\d*([.,])\d+(?:[eE][+-]?\d+)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
@@ -90,14 +90,18 @@ def raise_all(problems: Sequence[str], name: str) -> None:
     Problems(problems).check(DataError)
 
 
-def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Header and rows (line number, cells) of a CSV file; blank lines are left out.
+def read_cells(
+    path: Path, comments: bool = False, problems: list[str] | None = None
+) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Header and rows (line number, cells) of a CSV file; blank lines and repeated headers are left out.
 
-    Where semicolons or tabs separate the columns, decimals may have a comma; the cells given back have a point.
+    Where semicolons or tabs separate the columns, decimals may have a comma; the cells given back have a point. Units
+    that stand in a row of their own under the header go into its names.
 
     Args:
         path: the file
         comments: whether lines that begin with # are left out as well
+        problems: take rows of other lengths than the header, which are then left out
 
     Raises:
         DataError: no such file, not text, empty, no row under the header, or rows of other lengths
@@ -107,17 +111,49 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
     if not lines:
         raise DataError(f"{name}: the file is empty. It needs a line of column names and at least one row.")
     (_, header), *rows = lines
-    problems = header_problems(name, header)
-    problems += [
-        f"{name} line {line}: {len(cells)} cells under {len(header)} column names."
-        " Write one cell per column, decimals with a point."
-        for line, cells in rows
-        if len(cells) != len(header)
-    ]
+    wrong = header_problems(name, header)
+    rows = [(line, cells) for line, cells in rows if cells != header]
+    if not wrong and rows:
+        header, rows, wrong = take_units(name, header, rows)
     if not rows:
-        problems.append(f"{name}: there is no row under the column names. Add at least one.")
-    raise_all(problems, name)
-    return header, rows
+        wrong.append(f"{name}: there is no row under the column names. Add at least one.")
+    ragged = ragged_rows(name, header, rows)
+    raise_all([*wrong, *ragged] if wrong or problems is None else [], name)
+    if problems is not None:
+        problems += ragged
+    return header, [(line, cells) for line, cells in rows if len(cells) == len(header)]
+
+
+def take_units(
+    name: str, header: list[str], rows: list[tuple[int, list[str]]]
+) -> tuple[list[str], list[tuple[int, list[str]]], list[str]]:
+    """Header with the units that stand in a row of their own under it, the other rows, and what is wrong with them.
+
+    Args:
+        name: of the file
+        header: names of the columns
+        rows: line and cells of each, the first one at least
+    """
+    (line, cells), *others = rows
+    filled = [cell for cell in cells if not is_nothing(cell)]
+    units = {cell: unit for cell in filled if (unit := _unit(cell))}
+    if any(map(_NUMBER.fullmatch, cells)) or 2 * len(units) <= len(set(filled)) or len(cells) != len(header):
+        return header, rows, []
+    pairs = [(h, split_unit(h)[1], units.get(cell, "")) for h, cell in zip(header, cells, strict=True)]
+    wrong = [
+        f'{name} line {line}: column "{h}" is in {own} by its name, and in {unit} by the row of units. Mend one.'
+        for h, own, unit in pairs
+        if own and unit and own != unit and kind_of(own) == kind_of(unit)  # "wind_m_s" is in no seconds
+    ]
+    return [f"{h} [{unit}]" if unit and not own else h for h, own, unit in pairs], others, wrong
+
+
+def _unit(cell: str) -> str:
+    """The unit that is all of a cell, "" where there is none."""
+    unit = spell_unit(cell.strip("[]() "))
+    with suppress(ScenarioError):
+        return unit if kind_of(unit) and ":" not in unit else ""
+    return ""
 
 
 def read_header(path: Path) -> list[str]:
@@ -152,7 +188,7 @@ def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
     if sign != "," and (problem := two_readings(path.name, rows)):
         raise DataError(problem)
-    cells = [(line, plain(row, sign)) for line, row in rows]
+    cells = [(line, plain(row, sign)) for line, row in rows if not tells_sign(row)]
     return [(line, row) for line, row in cells if any(row)]
 
 
@@ -162,6 +198,8 @@ def written(head: bytes) -> tuple[str, str]:
     Args:
         head: the line
     """
+    if head.startswith(WIDE):
+        return "utf-16", _separator(head.decode("utf-16", errors="ignore"))  # the line ends within a letter
     for encoding in ENCODINGS:
         with suppress(UnicodeDecodeError):
             return encoding, _separator(head.decode(encoding))
@@ -169,8 +207,17 @@ def written(head: bytes) -> tuple[str, str]:
 
 
 def _separator(head: str) -> str:
-    """What separates columns, by their names: what stands there most often, a comma where nothing does."""
-    return max(SEPARATORS, key=head.count)
+    """What separates columns: as is told, else what stands most often between their names, else a comma."""
+    return told[1] if (told := _TOLD.match(head)) else max(SEPARATORS, key=head.count)
+
+
+def tells_sign(row: Sequence[str]) -> bool:
+    """Whether a first row only tells what separates columns.
+
+    Args:
+        row: its cells
+    """
+    return row[:1] == ["sep="]
 
 
 def plain(cells: Sequence[str], sign: str) -> list[str]:
@@ -182,30 +229,6 @@ def plain(cells: Sequence[str], sign: str) -> list[str]:
     """
     stripped = list(map(str.strip, cells))
     return stripped if sign == "," else [_COMMA.sub(r"\1.\2", cell) for cell in stripped]
-
-
-def two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str | None:
-    """Where a point or a comma may separate decimals or thousands, with both readings; None where all is clear.
-
-    Args:
-        name: of the file
-        rows: line and cells of each
-    """
-    sure: set[str] = set()
-    unsure: dict[str, tuple[int, str]] = {}
-    for line, cell in ((line, cell.strip()) for line, row in rows for cell in row):
-        if match := _GROUP.fullmatch(cell):
-            unsure.setdefault(match[1], (line, cell))
-        elif match := _DECIMAL.fullmatch(cell):
-            sure.add(match[1])
-    for sign, (line, cell) in unsure.items():
-        if sure != {sign}:
-            small, large = cell.replace(sign, "."), cell.replace(sign, "")
-            return (
-                f'{name} line {line}: "{cell}" may be {float(small):g} or {large}. Write thousands without a sign, and'
-                " all decimals with the same one."
-            )
-    return None
 
 
 def numbers(cells: Sequence[str]) -> np.ndarray | None:
@@ -250,9 +273,10 @@ def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     Raises:
         DataError: what `read_cells` finds, since nothing can be read beyond it
     """
-    header, rows = read_cells(path)
+    problems: list[str] = []
+    header, rows = read_cells(path, problems=problems)
     known = {c.name: c for c in columns}
-    problems = _missing(path.name, header, known)
+    problems += _missing(path.name, header, known)
     swept = set(ACCOUNTS) <= set(header)
     warnings = tuple(
         f'{path.name}: column "{h}" is not used.{suggestion(h, known.keys() - set(header))}'
@@ -260,6 +284,7 @@ def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
         if h not in known and not (swept and h in ACCOUNTS)
     )
     read: dict[str, list[Any]] = {h: [] for h in header if h in known}
+    wrong = []
     for line, cells in rows:
         for name, cell in zip(header, cells, strict=True):
             if name in known:
@@ -267,7 +292,8 @@ def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
                     read[name].append(_value(cell, known[name]))
                 except ValueError as error:
                     read[name].append(None)
-                    problems.append(f'{path.name} line {line}: {name} = "{cell}" {error}.')
+                    wrong.append((line, f'{name} = "{cell}" {error}.'))
+    problems += fold(path.name, wrong)
     return Table(path.name, {n: tuple(v) for n, v in read.items()}, tuple(line for line, _ in rows), warnings), problems
 
 
@@ -287,7 +313,7 @@ def _value(cell: str, column: Column) -> Any:
         if column.required and not cell:
             raise ValueError(f"is empty. Write the {column.doc}")
         return cell
-    if not column.required and not cell:
+    if not column.required and is_nothing(cell):
         return math.nan
     value = number(cell)
     if column.kind == "count":

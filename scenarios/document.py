@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -20,12 +21,14 @@ FROM_DATA = SOURCE_KINDS[1:]
 #: Keys of a table of values that are not values.
 ABOUT = ("doc", "source", "sources")
 
+#: Marks that UTF-16 begins with, as Excel and PowerShell write it.
+WIDE = (BOM_UTF16_LE, BOM_UTF16_BE)
 #: What no text has.
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x1a]")
 
 
 def read_text(path: Path, kind: str, refused: type[GearheatError], encodings: Sequence[str] = ("utf-8-sig",)) -> str:
-    """The text of a file, without the mark some programs put before UTF-8.
+    """The text of a file, without the mark some programs put before UTF-8; one that is marked as UTF-16 is that.
 
     Args:
         path: the file
@@ -37,9 +40,11 @@ def read_text(path: Path, kind: str, refused: type[GearheatError], encodings: Se
         GearheatError: of that class: there is no such file, it is no text, or it cannot be read
     """
     try:
+        raw = reading(path).read_bytes()
+        encodings = ("utf-16",) if raw.startswith(WIDE) else encodings
         for encoding in encodings:
             with suppress(UnicodeDecodeError):
-                text = reading(path).read_text(encoding=encoding)
+                text = raw.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
                 if encoding == encodings[0] or not _BINARY.search(text):
                     return text
     except FileNotFoundError:

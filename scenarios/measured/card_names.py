@@ -10,7 +10,7 @@ from ...model.units import spell_unit
 from ..csv_table import split_unit
 from ..scenario import Scenario
 from .card import Card
-from .sensors import CONTEXT, default_instruments
+from .sensors import CONTEXT, LOGGED, default_instruments
 from .table import Sensor
 
 #: Quantities for whose columns a card may say units, which the columns' own names say again.
@@ -35,7 +35,8 @@ def misnamed(
     free = set(header) - usual - set(read.values())
     for key, column in card.columns.items():
         # one table of a card may lack what another has: what is compared may be missing, but not misspelt
-        if column not in header and column not in usual and (key not in read or suggestion(column, free)):
+        missing = key not in LOGGED and column not in header and column not in usual
+        if missing and (key not in read or suggestion(column, free)):
             yield f'{card.name} columns.{key}: {name} has no column "{column}".{suggestion(column, header)}'
     known = {*usual, *header, *(s.name for s in declared), *(s.column for s in declared)}
     for column, unit in card.units.items():

@@ -6,7 +6,7 @@ import csv
 import gzip
 import math
 import zlib
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from itertools import chain, islice
@@ -17,7 +17,8 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ..csv_table import header_problems, in_si, plain, raise_all, two_readings, written
+from ..csv_cells import fold, is_nothing, ragged_rows, two_readings
+from ..csv_table import header_problems, in_si, plain, raise_all, split_unit, take_units, tells_sign, written
 from ..scenario import Scenario
 from .card import Card
 from .checks import COLDEST, HOTTEST
@@ -26,7 +27,7 @@ from .read import place_sensor
 from .sensors import SI, sensors_of, si_of
 from .shafts import torques
 from .table import Sensed, Sensor
-from .times import find_times, seconds
+from .times import find_days, find_times, join_days, seconds
 
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
@@ -38,6 +39,8 @@ LONGEST = 86400.0
 SPIKE_SD = 12.0
 #: [K].
 SPIKE_K = 8.0
+#: Numbers of at least this are seconds since 1970, whose unit is plain [s].
+SINCE_1970 = 1e8
 #: Share of temperatures that cannot be above which they have another unit.
 IMPOSSIBLE = 0.02
 #: Rows that are read at a time: as many as stay in a processor's own memory.
@@ -115,17 +118,26 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     Raises:
         DataError: everything wrong with the file, at once
     """
-    segment = card.columns.get("segment", "segment")
+    segment, problems = card.columns.get("segment", "segment"), Problems()
 
     def used(header: Sequence[str]) -> Collection[str]:
-        sensors, column = _columns(header, scenario, card, path.name)
-        return {column, segment, *(s.column for s in sensors)}
+        sensors, wrong = _columns(header, scenario, card, path.name)
+        problems.extend(wrong)
+        times = find_times(header, card.columns.get("time", ""))
+        return {segment, *times, *find_days(header), *(s.column for s in sensors)}
 
-    cells, lines = read_columns(path, used)
-    return log_of(path.name, cells, lines, scenario, card)
+    cells, lines = read_columns(path, used, problems)
+    return log_of(path.name, cells, lines, scenario, card, problems)
 
 
-def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenario: Scenario, card: Card) -> Log:
+def log_of(
+    name: str,
+    cells: dict[str, Sequence[Any]],
+    lines: np.ndarray,
+    scenario: Scenario,
+    card: Card,
+    known: Sequence[str] | None = None,
+) -> Log:
     """A log of a rig from its columns.
 
     Args:
@@ -134,76 +146,116 @@ def log_of(name: str, cells: dict[str, Sequence[Any]], lines: np.ndarray, scenar
         lines: line of each row in the file (n,)
         scenario: the rig
         card: its columns, units and sensors
+        known: problems of its header and rows; None where nothing has looked for them
 
     Raises:
         DataError: everything wrong with them, at once
     """
-    (sensors, time_column), problems = _columns(list(cells), scenario, card, name), Problems()
-    time, dated = seconds(cells.pop(time_column), time_column, name, lines, problems)
+    sensors, wrong = _columns(list(cells), scenario, card, name)
+    problems = Problems(wrong if known is None else known)
     values = {s.name: _values(cells[s.column], s, name, lines, problems) for s in sensors}
+    with problems:
+        time, dated, stretch, step, said = _timed(cells, name, lines, card)
     raise_all(problems, name)
     sensors, values = torques(scenario, sensors, values, name)
-    stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
     values, gross = _remove_outliers(name, values, sensors, stretch, lines)
-    warnings = check_log(name, sensors, values, lines, step, scenario)
+    warnings = (*said, *check_log(name, sensors, values, lines, step, scenario))
     return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings)
 
 
-def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], str]:
-    """The sensors that a log has, and its column of time. Raises DataError where one is missing."""
+def _columns(
+    header: Sequence[str], scenario: Scenario, card: Card, name: str
+) -> tuple[tuple[Sensor, ...], Problems]:
+    """The sensors that a log has, and what is wrong with their columns."""
     sensors, problems = place_sensor(sensors_of(scenario, card), header, card, name)
     if not any(s.role == "read" for s in sensors):
         problems.append(f"{name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
-    times = find_times(header)
+    return sensors, problems
+
+
+def _timed(
+    cells: dict[str, Sequence[Any]], name: str, lines: np.ndarray, card: Card
+) -> tuple[np.ndarray, bool, np.ndarray, float, tuple[str, ...]]:
+    """Time [s] (n,), whether it is a calendar's, stretch of each row (n,), step [s], and warnings.
+
+    The columns of time and of segments are taken out. Raises DataError where there are no such times.
+    """
+    times = find_times(cells, card.columns.get("time", ""))
     if len(times) > 1:
-        problems.append(f"{name} line 1: {' and '.join(times)} are columns of time. Keep one.")
+        raise DataError(f"{name} line 1: {' and '.join(times)} are columns of time. Keep one.")
     if not times:
-        problems.append(f'{name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
+        raise DataError(
+            f"{name} line 1: there is no column of time. Name yours in the card,"
+            ' columns = { "time" = "..." }, or call it "time_utc" or "time_s".'
+        )
+    column, problems = times[0], Problems()
+    unit = card.units.get(column, split_unit(column)[1])
+    time, dated = seconds(join_days(cells, column), column, name, lines, problems, unit)
     raise_all(problems, name)
-    return sensors, times[0]
+    del cells[column]
+    stretch, step = _stretches(time, cells.pop(card.columns.get("segment", "segment"), None), name, lines)
+    bare = not (dated or unit) and time[0] < SINCE_1970
+    said = (
+        f"{name}: {column} has no unit and is taken for seconds, {step:.4g} s from sample to sample. If it is another,"
+        ' write it behind the name, "time [min]", or in the card\'s table [units].'
+    )
+    return time, dated, stretch, step, (said,) if bare else ()
 
 
 def read_columns(
-    path: Path, used: Callable[[Sequence[str]], Collection[str]]
+    path: Path, used: Callable[[Sequence[str]], Collection[str]], problems: list[str] | None = None
 ) -> tuple[dict[str, Sequence[Any]], np.ndarray]:
     """Used columns by header, the line of each row; cells as numbers, block by block, where they are nothing else.
 
     Args:
         path: CSV, CSV.gz or Parquet
         used: which columns of a header
+        problems: take rows of other lengths than the header, which are then left out
 
     Raises:
         DataError: it cannot be read, or its rows are not those of a table
     """
+    wrong = [] if problems is None else problems
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path, used)
         text, sign = _open(path)
         with text as file:
-            reader = csv.reader(file, delimiter=sign)
-            header = [h.strip() for h in next(reader, [])]
-            raise_all(header_problems(path.name, header), path.name)
+            header, rows = _head(path.name, csv.reader(file, delimiter=sign))
             kept, lines = used(header), list[np.ndarray]()
             parts: dict[str, list[Sequence[Any]]] = {h: [] for h in header if h in kept}
-            rows = ((reader.line_num, row) for row in reader if any(row))
             while block := list(islice(rows, BLOCK)):
                 if sign != "," and not lines and (problem := two_readings(path.name, block)):
                     raise DataError(problem)
-                if ragged := next((line for line, row in block if len(row) != len(header)), None):
-                    raise DataError(
-                        [f"{path.name} line {ragged}: has not {len(header)} cells as the header has. Mend the row."]
-                    )
-                lines.append(np.array([line for line, _ in block]))
+                if ragged := ragged_rows(path.name, header, block):
+                    wrong += ragged
+                    block = [(line, row) for line, row in block if len(row) == len(header)]
+                lines.append(np.array([line for line, _ in block], dtype=int))
                 columns = list(zip(*(row for _, row in block), strict=True))
                 for h, k in zip(parts, map(header.index, parts), strict=True):
-                    parts[h].append(_compact(plain(columns[k], sign)))
+                    parts[h].append(_compact(plain(columns[k] if block else (), sign)))
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
     except (OSError, EOFError, ValueError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
+    if problems is None:
+        raise_all(wrong, path.name)
     if not lines:
         raise DataError([f"{path.name}: holds no samples."])
     return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
+
+
+def _head(name: str, reader: Any) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """Header with the units of a row under it, and the line and cells of the other rows."""
+    first = next(reader, [])
+    names = next(reader, []) if tells_sign(first) else first
+    header = [h.strip() for h in names]
+    raise_all(header_problems(name, header), name)
+    rows = ((reader.line_num, row) for row in reader if any(row) and row != names)
+    if ahead := list(islice(rows, 1)):
+        header, ahead, problems = take_units(name, header, ahead)
+        raise_all(problems, name)
+    return header, chain(ahead, rows)
 
 
 def _compact(cells: Sequence[str]) -> Sequence[Any]:
@@ -245,7 +297,7 @@ def _parquet(
 
 def parse_number(cell: Any) -> float:
     """A cell as a number, NaN where it is empty. Raises TypeError or ValueError where it is none."""
-    if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
+    if cell is None or (isinstance(cell, str) and is_nothing(cell)):
         return math.nan
     if math.isinf(number := float(cell)) or isinstance(cell, bool) or (isinstance(cell, str) and "_" in cell):
         raise ValueError
@@ -256,11 +308,13 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     """A column in SI (n,), NaN where a cell is empty."""
     whole = isinstance(cells, np.ndarray)
     found = np.array(cells) if whole else np.full(len(cells), np.nan)
+    wrong = []
     for k, cell in enumerate([] if whole else cells):
         try:
             found[k] = parse_number(cell)
         except (TypeError, ValueError):
-            problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
+            wrong.append((lines[k], f'{sensor.column} is "{cell}", expected a number or nothing.'))
+    problems += fold(name, wrong)
     if not np.isfinite(found).any():
         problems.append(f"{name}: column {sensor.column} holds no number. Give what was read, or take it out.")
     with problems:
@@ -281,8 +335,9 @@ def _stretches(
     )
     other = np.diff(np.unique(named, return_inverse=True)[1]) != 0
     steps = np.diff(time)
-    if len(back := np.flatnonzero((steps <= 0) & ~other)):
-        raise DataError([f"{name} line {lines[back[0] + 1]}: time does not go on. Sort the samples by time."])
+    said = ("time does not go on. Sort the samples by time.", "it has the time of the line above. Keep one of the two.")
+    back = np.flatnonzero((steps <= 0) & ~other)
+    raise_all(fold(name, ((lines[k + 1], said[int(steps[k] == 0)]) for k in back)), name)
     step = float(np.median(steps[(steps > 0) & ~other]))
     if not SHORTEST <= step <= LONGEST:
         raise DataError([f"{name}: there are {step:g} s from sample to sample. Check the unit of its time."])
@@ -308,7 +363,8 @@ def _remove_outliers(
         inside[1:-1] = (stretch[2:] == stretch[1:-1]) & (stretch[:-2] == stretch[1:-1])
         off = np.where(inside, np.minimum(np.abs(column - before), np.abs(column - after)), np.nan)
         off = np.where(np.sign(column - before) == np.sign(column - after), off, 0.0)
-        sd = 1.4826 * float(np.nanmedian(np.abs(np.diff(column)))) + 0.05
+        steps = np.abs(np.diff(column[np.isfinite(column)]))  # over gaps: a slow channel has no two readings in a row
+        sd = 1.4826 * float(np.median(steps) if len(steps) else 0.0) + 0.05
         usual = SPIKE_TAIL * float(np.nanquantile(off, 0.999))
         spiked = wrong | (off > max(SPIKE_SD * sd, SPIKE_K, usual))
         expected = np.where(np.isfinite(before + after), (before + after) / 2, np.nanmedian(column))

@@ -107,13 +107,14 @@ class _Reader:
 
     def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
         self.path, self.scenario, self.card, self.points = path, scenario, card, points
-        self.header, self.rows = read_cells(path)
+        self.header, self.rows = read_cells(path, problems=[])  # rows of other lengths are told when they are parsed
         context = {name: card.columns.get(name, name) for name in CONTEXT}
         self.context = {name: column for name, column in context.items() if column in self.header}
         self.held = (
             points or card.protocol.prose == "steady" or not self.context.keys().isdisjoint(("test", "dwell_min"))
         )
-        if not self.held and (step := logged_step(self.header, [row for _, row in self.rows])):
+        named, cells = card.columns.get("time", ""), [row for _, row in self.rows]
+        if not self.held and (step := logged_step(self.header, cells, named)):
             raise DataError(
                 f"{path.name}: is a log, with a row each {step:g} s. Give it by --logs, and as a table the points that"
                 ' were held; or say that all rows are of steady states: protocol = "steady" in the card.'

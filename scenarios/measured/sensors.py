@@ -32,6 +32,10 @@ _TABLES = tables("scenarios.measured", "sensors.toml")
 #: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, its SI unit, and the least
 #: and largest number in the unit of its name.
 CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str, float, float]] = _TABLES["context"]
+#: Columns that a log may have beside its sensors.
+LOGGED: Mapping[str, str] = _TABLES["logged"]
+#: First words of rows in which programs sum up those above.
+SUMMARIES = frozenset(_TABLES["summaries"])
 #: Directions as tables write them.
 DIRECTIONS = (1, 2, -1, 0)
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
@@ -80,13 +84,19 @@ def floats(cells: Sequence[Any]) -> np.ndarray:
 
 
 def contradictions(cells: Cells) -> list[str]:
-    """Rows of one test that contradict each other: another oil, or an earlier order."""
+    """Rows that belong to no test, or contradict another of theirs: another oil, or an earlier order."""
     problems: list[str] = []
     before: dict[str, tuple[int, str, float]] = {}
     if "test" not in cells.context:
         return problems
     rows = zip(cells.texts("test"), cells.texts("oil"), cells.numbers("order"), strict=True)
     for row, (test, oil, order) in enumerate(rows):
+        if not test or test.rstrip(".:").casefold() in SUMMARIES:
+            problems.append(
+                f'{cells.table.place(row)}: {cells.context["test"]} = "{test}" is no test. Write which one the reading'
+                " belongs to, or take out a row that sums up others."
+            )
+            continue
         first, oil_before, order_before = before.setdefault(test, (row, oil, order))
         place, line = cells.table.place(row), cells.table.lines[first]
         if oil != oil_before:
@@ -139,7 +149,7 @@ class _Sensors:
         for key, table in self.card.sensors.items():
             self._declare(key, table.model_dump(exclude_unset=True))
         for key, column in self.card.columns.items():
-            if key not in CONTEXT:
+            if key not in (*CONTEXT, *LOGGED):
                 self._rename(key, column)
         for key, channel in self.card.channels.items():
             if (name := self._name(key)) is not None:

@@ -194,7 +194,7 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     named = {
         c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT
     }
-    time = next(iter(find_times(header)), "time_s")
+    time = next(iter(find_times(header, card.columns.get("time", ""))), "time_s")
     columns = [*named.values(), Column(time, "time since the start of the test", at_least=0.0)]
     columns += [Column(s.column, s.reads, required=False) for s in sensors]
     table, wrong = parse(path, columns)

@@ -5,18 +5,29 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from datetime import UTC, datetime
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import numpy as np
 
 from ...model.errors import Problems
+from ..csv_cells import fold
 from ..csv_table import in_si, split_unit
 from ..duty import LATEST, YEAR
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t", "zeit", "zeitstempel", "datum_uhrzeit")
+#: Names of a column of times of day, and of that of the days beside it.
+CLOCKS = ("uhrzeit", "time_of_day", "clock")
+DAYS = ("date", "datum", "day", "tag")
+NAMED = (TIMES, CLOCKS)
+_CLOCK = re.compile(r"\d?\d:\d\d")
+#: An hour without its zero.
+_HOUR = re.compile(r"(?<=[ T])(?=\d:)")
+#: Numbers between these in steps below a half, whose unit nothing says, are dates as Excel keeps them: days since 1900.
+EXCEL_DAYS = (30000.0, 60000.0)
+EXCEL_ZERO = datetime(1899, 12, 30, tzinfo=UTC)
 #: A date as it is written in Germany.
 _DATE = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
 #: What a column holds that is no calendar's.
@@ -28,10 +39,35 @@ LOGGED_STEP = 900.0
 EVEN = 0.9
 
 
-def find_times(header: Iterable[str]) -> list[str]:
-    """The columns of time."""
+def find_times(header: Iterable[str], named: str = "") -> list[str]:
+    """The columns of time: the one that a card names, else those of a usual name, else those of times of day.
+
+    Args:
+        header: names of the columns
+        named: by the card, with or without its unit; "" where it names none
+    """
     names = {h: (h.strip(), split_unit(h)[0]) for h in header}
-    return [h for h, own in names.items() if not {re.sub("[ /]", "_", n.casefold()) for n in own}.isdisjoint(TIMES)]
+    spelt = {h: {re.sub("[ /]", "_", name.casefold()) for name in own} for h, own in names.items()}
+    ways = ([h for h, own in names.items() if named in own], *([h for h in names if spelt[h] & {*w}] for w in NAMED))
+    return next((found for found in ways if found), [])
+
+
+def find_days(header: Iterable[str]) -> list[str]:
+    """Columns of days, which may stand beside times of day."""
+    return [h for h in header if h.strip().casefold() in DAYS]
+
+
+def join_days(cells: Mapping[str, Sequence[Any]], column: str) -> Sequence[Any]:
+    """Cells of the column of time (n,), times of day with the day before them.
+
+    Args:
+        cells: column -> its cells (n,)
+        column: of time
+    """
+    days, times = find_days(cells), cells[column]
+    if len(days) != 1 or isinstance(times, np.ndarray) or not all(_CLOCK.match(str(time).strip()) for time in times):
+        return times
+    return [f"{str(day).strip()} {str(time).strip()}" for day, time in zip(cells[days[0]], times, strict=True)]
 
 
 def parse_time(cell: Any) -> tuple[float, str]:
@@ -40,7 +76,7 @@ def parse_time(cell: Any) -> tuple[float, str]:
         if not math.isfinite(number := float(cell)):
             raise ValueError
         return number, NUMBERS
-    text = _DATE.sub(r"\3-\2-\1", str(cell).strip())
+    text = _HOUR.sub("0", _DATE.sub(r"\3-\2-\1", str(cell).strip()))
     stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(text)
     if stamp.tzinfo:
         return stamp.timestamp(), "times with a zone"
@@ -58,7 +94,7 @@ def _is_number(cell: Any) -> bool:
 
 
 def seconds(
-    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: Problems
+    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: Problems, unit: str = ""
 ) -> tuple[np.ndarray, bool]:
     """Time [s] (n,), and whether it is a calendar's.
 
@@ -68,44 +104,62 @@ def seconds(
         name: of the file
         lines: of the cells in it (n,)
         problems: take what is wrong with them
+        unit: of numbers; "" where nothing says it, which are then seconds
     """
-    unit = split_unit(column)[1] or "s"
     found, kinds = np.full(len(cells), np.nan), Counter[str]()
     if isinstance(cells, np.ndarray) and np.isfinite(cells).all():
         found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
+    wrong = []
     for k, cell in enumerate(cells):
         try:
             found[k], kind = parse_time(cell)
             kinds[kind] += 1
         except (TypeError, ValueError, OverflowError):
-            problems.append(
-                f'{name} line {lines[k]}: {column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'
-            )
+            wrong.append((lines[k], f'{column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'))
+    problems += fold(name, wrong)
     if len(kinds) > 1:
         said = " and ".join(f"{count} {kind}" for kind, count in kinds.items())
         problems.append(f"{name}: {column} holds {said}. Write all of them alike.")
     dated = NUMBERS not in kinds
+    if not (dated or unit) and (said := _days_of_excel(found)):
+        problems.append(f"{name}: {column} {said}")
     with problems:
-        found = found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))
+        found = found if dated else np.asarray(in_si(found, unit or "s", "s", name=f"{name} {column}"))
     if np.nanmax(np.abs(found), initial=0.0) > LATEST:
         problems.append(
-            f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit}."
+            f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit or 's'}."
         )
     return found, dated
 
 
-def logged_step(header: Sequence[str], rows: Sequence[Sequence[str]]) -> float | None:
+def _days_of_excel(numbers: np.ndarray) -> str:
+    """What is said of numbers (n,) that seem to be dates as Excel keeps them, "" where they do not."""
+    known = numbers[np.isfinite(numbers)]
+    step = float(np.median(np.abs(np.diff(known)))) if len(known) > 1 else 0.0
+    (low, high), ends = EXCEL_DAYS, (known.min(initial=np.inf), known.max(initial=-np.inf))
+    if not (low <= ends[0] and ends[1] <= high and 0 < step < 0.5):
+        return ""
+    return (
+        f"goes from {ends[0]:.10g} to {ends[1]:.10g} in steps of {step:.3g}, as days since 1900 do, in which Excel keeps"
+        f" dates. Write dates, {EXCEL_ZERO + timedelta(days=float(ends[0])):%Y-%m-%d %H:%M}, or the unit behind the"
+        ' name: "time [d]", "time [s]".'
+    )
+
+
+def logged_step(header: Sequence[str], rows: Sequence[Sequence[str]], named: str = "") -> float | None:
     """Step of a table that is a log [s], None where it is none: rows at even, short steps, far too short for rest.
 
     Args:
         header: names of its columns
         rows: its cells
+        named: column of time by the card; "" where it names none
     """
-    times = find_times(header)
+    times = find_times(header, named)
     if len(times) != 1 or len(rows) < LOGGED_ROWS:
         return None
-    problems, place = Problems(), header.index(times[0])
-    time, _ = seconds([row[place] for row in rows], times[0], "", np.arange(len(rows)), problems)
+    problems = Problems()
+    cells = join_days({h: [row[k] for row in rows] for k, h in enumerate(header)}, times[0])
+    time, _ = seconds(cells, times[0], "", np.arange(len(rows)), problems, split_unit(times[0])[1] or "s")
     if problems:
         return None
     steps = np.diff(time)

@@ -14,7 +14,7 @@ from ..scenario import Scenario
 from ..tables import Strict
 from .card import Card, CardSensor, Channel, Protocol
 from .lubrication import lubricants
-from .sensors import CONTEXT, SI, sensors_of
+from .sensors import CONTEXT, LOGGED, SI, sensors_of
 from .table import Sensor
 
 #: First lines of a card.
@@ -37,7 +37,7 @@ def default_card(scenario: Scenario, prior_sd: Mapping[str, float], known: Card 
     """
     given = known or Card()
     sensors = sensors_of(scenario, given)
-    context = {name: given.columns.get(name, name) for name in CONTEXT}
+    context = {name: given.columns.get(name, name) for name in (*CONTEXT, *LOGGED)}
     stop = scenario.protocol.stop / 60.0 if scenario.protocol else 0.0
     return Card(
         columns={s.name: s.column for s in sensors} | context,
@@ -106,7 +106,8 @@ def _mapping(name: str, doc: str, entries: Mapping[str, Any]) -> Iterator[str]:
         if key in nested:
             yield from _table(f"{name}.{_key(key)}", doc, value)
         else:
-            said = CONTEXT[key][0] if name == "columns" and key in CONTEXT else ""
+            docs = LOGGED | {name: doc for name, (doc, *_) in CONTEXT.items()} if name == "columns" else {}
+            said = docs.get(key, "")
             yield from _write_line(f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}", said)
 
 
