@@ -152,7 +152,7 @@ def _unit(cell: str) -> str:
     """The unit that is all of a cell, "" where there is none."""
     unit = spell_unit(cell.strip("[]() "))
     with suppress(ScenarioError):
-        return unit if kind_of(unit) and ":" not in unit else ""
+        return unit if kind_of(unit) and not {*unit} & {*":="} else ""
     return ""
 
 
@@ -315,10 +315,13 @@ def _value(cell: str, column: Column) -> Any:
         return cell
     if not column.required and is_nothing(cell):
         return math.nan
+    wanted = "" if column.required else f". Write the {column.doc}, or give the column another name"
+    if column.kind == "count" and wanted and not _NUMBER.fullmatch(cell):
+        raise ValueError(f"is no whole number{wanted}")
     value = number(cell)
     if column.kind == "count":
         if value != int(value):
-            raise ValueError("is no whole number")
+            raise ValueError(f"is no whole number{wanted}")
         value = int(value)
     if column.options and value not in column.options:
         raise ValueError(f"is not known. Write one of: {', '.join(str(o) for o in column.options)}")

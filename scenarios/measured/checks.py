@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.units import text
+from ..csv_cells import fold
 from ..csv_table import raise_all
 from .against_model import AT_REST, LEAST_TESTS, Oils, against_model, format_value, place
 from .nominal import Nominal, efficiency, shaft_powers
@@ -67,15 +68,18 @@ def check(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = Fa
     if not points and not problems:
         problems += _balance(campaign, nominal)
     raise_all(problems, campaign.name)
-    return replace(campaign, warnings=(*campaign.warnings, *_twice(campaign, same_test=False)))
+    odd = (*_twice(campaign, same_test=False), *_below_zero(campaign), *(() if points else _gains(campaign, nominal)))
+    return replace(campaign, warnings=(*campaign.warnings, *odd))
 
 
 def too_small(campaign: Campaign) -> list[str]:
     """The problem of a table that is too small to say anything."""
-    if campaign.n >= LEAST_ROWS and campaign.n_tests >= LEAST_TESTS:
+    copies = len(_copies(campaign))
+    if campaign.n - copies >= LEAST_ROWS and campaign.n_tests >= LEAST_TESTS:
         return []
+    counted = f"{campaign.n} readings of {campaign.n_tests} tests" + f", {copies} of them copies," * bool(copies)
     return [
-        f"{campaign.name}: {campaign.n} readings of {campaign.n_tests} tests are too few to say anything."
+        f"{campaign.name}: {counted} are too few to say anything."
         f" Give at least {LEAST_ROWS} readings of {LEAST_TESTS} tests."
     ]
 
@@ -171,14 +175,37 @@ def _contradictions(campaign: Campaign) -> Iterator[str]:
     yield from _twice(campaign, same_test=True)
 
 
-def _twice(campaign: Campaign, *, same_test: bool) -> Iterator[str]:
+def _twice(campaign: Campaign, *, same_test: bool) -> list[str]:
     """Rows whose numbers are all those of another one, of the same test or of an earlier one."""
+    said, lines = "all readings are those of line {}. Keep one of them.", campaign.lines
+    found = [
+        (int(lines[row]), said.format(lines[before]))
+        for row, before in _copies(campaign).items()
+        if (campaign.test[before] == campaign.test[row]) == same_test
+    ]
+    return fold(campaign.name, found)
+
+
+def _copies(campaign: Campaign) -> dict[int, int]:
+    """Row of readings that are all those of an earlier row -> that row."""
     numbers = np.array([campaign.values[s.name] for s in campaign.sensors]).T
+    read = np.any([np.isfinite(campaign.values[s.name]) for s in campaign.read], axis=0) if campaign.read else ()
     seen: dict[bytes, int] = {}
-    for row, line in enumerate(numbers if campaign.read else ()):
-        before = seen.setdefault(np.nan_to_num(line).tobytes(), row)
-        if before != row and (campaign.test[before] == campaign.test[row]) == same_test:
-            yield f"{place(campaign, row)}: all readings are those of line {campaign.lines[before]}. Keep one of them."
+    rows = np.flatnonzero(read).tolist()
+    first = {row: seen.setdefault(np.nan_to_num(numbers[row]).tobytes(), row) for row in rows}
+    return {row: before for row, before in first.items() if before != row}
+
+
+def _below_zero(campaign: Campaign) -> Iterator[str]:
+    """Magnitudes that are a little below zero."""
+    for sensor in (s for s in campaign.sensors if s.signs != (1.0, 1.0)):
+        values = campaign.values[sensor.name]
+        if len(rows := np.flatnonzero(values < 0)):
+            yield (
+                f"{place(campaign, rows[0])}: {sensor.column} holds magnitudes and is below zero, in {len(rows)} of"
+                f" {campaign.n} rows, by {format_value(sensor, -values.min())} at most. It is taken as it is, for an"
+                " error of its zero."
+            )
 
 
 def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
@@ -214,6 +241,21 @@ def _find_repeated_columns(campaign: Campaign) -> Iterator[str]:
                     f"{campaign.name}: {sensor.column} holds the numbers of {other.column}."
                     " Give what each sensor read, or leave out one of the columns."
                 )
+
+
+def _gains(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
+    """Efficiencies above 1 in most rows, as far as an instrument that errs explains them."""
+    powers = shaft_powers(campaign, nominal)
+    if powers is None or len(powers) < 2:
+        return
+    eta = efficiency(powers)
+    odd = eta > BEST
+    if odd.sum() * 2 > np.isfinite(eta).sum():
+        torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
+        yield (
+            f"{place(campaign, odd.argmax())}: the torques give an efficiency of {eta[odd][0]:.4g}, and of more than"
+            f" {BEST:g} in {odd.sum()} of {campaign.n} rows. No gearbox has it: one of {torques} is taken to err."
+        )
 
 
 def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:

@@ -163,9 +163,7 @@ def log_of(
     return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings)
 
 
-def _columns(
-    header: Sequence[str], scenario: Scenario, card: Card, name: str
-) -> tuple[tuple[Sensor, ...], Problems]:
+def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], Problems]:
     """The sensors that a log has, and what is wrong with their columns."""
     sensors, problems = place_sensor(sensors_of(scenario, card), header, card, name)
     if not any(s.role == "read" for s in sensors):

@@ -27,6 +27,7 @@ from .nominal import Nominal, drive_by, unmeasured
 from .sensors import (
     CONTEXT,
     DIRECTIONS,
+    SI,
     Cells,
     contradictions,
     floats,
@@ -34,12 +35,15 @@ from .sensors import (
     sensors_of,
     si_of,
 )
-from .shafts import torques, turned
+from .shafts import SLOW, torques, turned
 from .table import Campaign, Sensor
 from .times import logged_step
 
 #: Share of the tests that must have run alike, for one that lacks a row to be taken to have run like them.
 USUAL = 0.5
+#: Magnitudes below zero by so many tolerances of the sensor are errors of its zero; so are those within `SLOW` of its
+#: range.
+ZERO_SD = 3.0
 #: Number of a row that is not in the file.
 UNREAD = 0
 
@@ -140,12 +144,11 @@ class _Reader:
         self.problems += contradictions(cells)
         oils = {oil: table.place(row) for row, oil in reversed(list(enumerate(cells.texts("oil"))))}
         self.problems += oil_problems(self.path.name, oils, self.card)
-        raise_all(self.problems, self.path.name)
         values = {s.name: self._values(table, s) for s in self.sensors}
-        self.sensors, values = torques(self.scenario, self.sensors, values, self.path.name)
         minutes = {name: self._si(cells, name) for name, (_, _, si, _, _) in CONTEXT.items() if si}
         self._check_context(cells, minutes)
         raise_all(self.problems, self.path.name)
+        self.sensors, values = torques(self.scenario, self.sensors, values, self.path.name)
         found = self._ordered(cells, values, minutes)
         nominal = Nominal(drive_by(self.scenario, self.sensors))
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
@@ -156,10 +159,7 @@ class _Reader:
         return _with_unread(check(warned, nominal, known, points=self.points))
 
     def _columns(self) -> list[Column]:
-        found = [
-            Column(s.column, s.reads, required=s.role == "given", at_least=0.0 if s.signs != (1.0, 1.0) else -np.inf)
-            for s in self.sensors
-        ]
+        found = [Column(s.column, s.reads, required=s.role == "given") for s in self.sensors]
         for name, column in self.context.items():
             doc, kind = CONTEXT[name][:2]
             options = DIRECTIONS if name == "direction" else ()
@@ -172,6 +172,15 @@ class _Reader:
         cells = floats(table.columns[sensor.column])
         with self.problems:
             cells = in_si(cells, sensor.unit, si_of(sensor), name=f"{self.path.name} {sensor.column}")
+        if sensor.signs != (1.0, 1.0) and (cells < 0).any():
+            full = np.nanmax(np.abs(cells))
+            if si_of(sensor) == SI[sensor.kind]:
+                full = max(full, abs(Nominal(self.scenario).value(sensor.reads)), ZERO_SD / SLOW * sensor.offset_sd)
+            self.problems += [
+                f'{table.place(row)}: {sensor.column} = "{table.columns[sensor.column][row]:g}" is out of range.'
+                f" The {sensor.reads} must be at least 0."
+                for row in np.flatnonzero(cells < -SLOW * full)
+            ]
         return cells
 
     def _si(self, cells: Cells, name: str) -> np.ndarray:

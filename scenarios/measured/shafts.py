@@ -69,12 +69,18 @@ def _without_sign(
         return tuple(sensors), values
     ways = {s.name: -1.0 if nominal.value(s.reads) < 0 else 1.0 for s in sensors if s.name in loads}
     signed = (replace(s, signs=(ways[s.name], -ways[s.name])) if s.name in ways else s for s in sensors)
-    return tuple(signed), values | {name: np.abs(columns[name]) for name in ways}
+    return tuple(signed), values | {name: _magnitudes(columns[name]) for name in ways}
 
 
 def _both(column: np.ndarray) -> bool:
-    """Whether a column holds both signs."""
-    return bool((column < 0).any() and (column > 0).any())
+    """Whether a column (n,) holds both signs, beyond what an error of its zero makes of no load."""
+    least = SLOW * np.nanmax(np.abs(column), initial=0.0)
+    return bool((column < -least).any() and (column > least).any())
+
+
+def _magnitudes(column: np.ndarray) -> np.ndarray:
+    """A column of one sign (n,) without it; what an error of the zero puts beyond zero stays there."""
+    return column * (-1.0 if np.nansum(column) < 0 else 1.0)
 
 
 def turned(
@@ -124,7 +130,7 @@ def turned(
         read = [s for s in read if not _both(values[s.name]) and {s.name, s.column}.isdisjoint(signed_by_card)]
         whole = [s.name for s in read if signed is None or (direction == signed).all()]
         signs |= {name: (usual[name], -usual[name]) for name in whole}
-        values = values | {name: np.abs(values[name]) for name in whole}
+        values = values | {name: _magnitudes(values[name]) for name in whole}
     return tuple(replace(s, signs=signs.get(s.name, s.signs)) for s in sensors), values, direction
 
 

@@ -139,9 +139,10 @@ def _days_of_excel(numbers: np.ndarray) -> str:
     (low, high), ends = EXCEL_DAYS, (known.min(initial=np.inf), known.max(initial=-np.inf))
     if not (low <= ends[0] and ends[1] <= high and 0 < step < 0.5):
         return ""
+    date = EXCEL_ZERO + timedelta(days=float(ends[0]))
     return (
-        f"goes from {ends[0]:.10g} to {ends[1]:.10g} in steps of {step:.3g}, as days since 1900 do, in which Excel keeps"
-        f" dates. Write dates, {EXCEL_ZERO + timedelta(days=float(ends[0])):%Y-%m-%d %H:%M}, or the unit behind the"
+        f"goes from {ends[0]:.10g} to {ends[1]:.10g} in steps of {step:.3g}, as days since 1900 do, by which Excel"
+        f" keeps dates. Write dates, {date:%Y-%m-%d %H:%M}, or the unit behind the"
         ' name: "time [d]", "time [s]".'
     )
 
