@@ -137,7 +137,8 @@ def take_units(
     (line, cells), *others = rows
     filled = [cell for cell in cells if not is_nothing(cell)]
     units = {cell: unit for cell in filled if (unit := _unit(cell))}
-    if any(map(_NUMBER.fullmatch, cells)) or 2 * len(units) <= len(set(filled)) or len(cells) != len(header):
+    least = max(2, len(filled) // 2 + 1)  # one alone may be a name: "P1" is a unit, too
+    if any(map(_NUMBER.fullmatch, cells)) or sum(c in units for c in cells) < least or len(cells) != len(header):
         return header, rows, []
     pairs = [(h, split_unit(h)[1], units.get(cell, "")) for h, cell in zip(header, cells, strict=True)]
     wrong = [

@@ -245,8 +245,8 @@ def read_columns(
 
 def _head(name: str, reader: Any) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """Header with the units of a row under it, and the line and cells of the other rows."""
-    first = next(reader, [])
-    names = next(reader, []) if tells_sign(first) else first
+    first: list[str] = next(reader, [])
+    names: list[str] = next(reader, []) if tells_sign(first) else first
     header = [h.strip() for h in names]
     raise_all(header_problems(name, header), name)
     rows = ((reader.line_num, row) for row in reader if any(row) and row != names)

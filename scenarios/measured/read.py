@@ -16,6 +16,7 @@ import numpy as np
 
 from ...model.errors import DataError, Problems, suggestion
 from ...model.units import spell_unit
+from ..csv_cells import fold
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .against_model import unheld
@@ -176,11 +177,10 @@ class _Reader:
             full = np.nanmax(np.abs(cells))
             if si_of(sensor) == SI[sensor.kind]:
                 full = max(full, abs(Nominal(self.scenario).value(sensor.reads)), ZERO_SD / SLOW * sensor.offset_sd)
-            self.problems += [
-                f'{table.place(row)}: {sensor.column} = "{table.columns[sensor.column][row]:g}" is out of range.'
-                f" The {sensor.reads} must be at least 0."
-                for row in np.flatnonzero(cells < -SLOW * full)
-            ]
+            said = f'{sensor.column} = "{{:g}}" is out of range. The {sensor.reads} must be at least 0.'
+            far = np.flatnonzero(cells < -SLOW * full).tolist()
+            wrong = ((table.lines[row], said.format(table.columns[sensor.column][row])) for row in far)
+            self.problems += fold(self.path.name, wrong)
         return cells
 
     def _si(self, cells: Cells, name: str) -> np.ndarray:

@@ -25,6 +25,8 @@ HEAD = """\
 """
 #: Columns of a card.
 WIDTH = 80
+#: What columns hold that no sensor has.
+COLUMNS = {**LOGGED, **{name: doc for name, (doc, *_) in CONTEXT.items()}}
 
 
 def default_card(scenario: Scenario, prior_sd: Mapping[str, float], known: Card | None = None) -> Card:
@@ -37,7 +39,7 @@ def default_card(scenario: Scenario, prior_sd: Mapping[str, float], known: Card 
     """
     given = known or Card()
     sensors = sensors_of(scenario, given)
-    context = {name: given.columns.get(name, name) for name in (*CONTEXT, *LOGGED)}
+    context = {name: given.columns.get(name, name) for name in COLUMNS}
     stop = scenario.protocol.stop / 60.0 if scenario.protocol else 0.0
     return Card(
         columns={s.name: s.column for s in sensors} | context,
@@ -106,8 +108,7 @@ def _mapping(name: str, doc: str, entries: Mapping[str, Any]) -> Iterator[str]:
         if key in nested:
             yield from _table(f"{name}.{_key(key)}", doc, value)
         else:
-            docs = LOGGED | {name: doc for name, (doc, *_) in CONTEXT.items()} if name == "columns" else {}
-            said = docs.get(key, "")
+            said = COLUMNS.get(key, "") if name == "columns" else ""
             yield from _write_line(f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}", said)
 
 

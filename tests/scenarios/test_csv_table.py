@@ -1,10 +1,11 @@
 """Tables that users write: every way one can be wrong, and what is read all the same."""
 
+import math
 from pathlib import Path
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.scenarios.csv_table import Column, Table, parse, raise_all, read_cells
+from gearheat.scenarios.csv_table import Column, Table, parse, raise_all, read_cells, read_header
 
 COLUMNS = (
     Column("point", "number of the reading", "count", at_least=0),
@@ -44,7 +45,7 @@ def test_no_file_and_a_folder(tmp_path: Path) -> None:
     [
         (b"\n\n", "data.csv: the file is empty. It needs a line of column names and at least one row."),
         (HEADER.encode(), "data.csv: there is no row under the column names. Add at least one."),
-        (b"\xff\xfe\x00\x81", "data.csv: is not UTF-8 text. Save it as a CSV file."),
+        (b"\x00\xfe\x00\x81", "data.csv: is not UTF-8 text. Save it as a CSV file."),
         (b"PK\x03\x04 \xe9", "data.csv: is not UTF-8 text. Save it as a CSV file."),
         (
             f"{HEADER}\n1,1,240,45,3\n{ROWS[1]}\n".encode(),
@@ -83,9 +84,20 @@ def test_wrong_cells_are_all_named(tmp_path: Path) -> None:
 
 
 def test_a_page_of_problems_is_enough(tmp_path: Path) -> None:
-    found = problems(table(tmp_path, *(f"{i},1,x,45" for i in range(1, 101))))
-    assert len(found) == 31
-    assert found[-1] == "data.csv: 70 more problems. Mend the first ones and read it again."
+    with pytest.raises(DataError) as raised:
+        raise_all([f"data.csv line {k}: is odd." for k in range(100)], "data.csv")
+    assert len(raised.value.problems) == 31
+    assert raised.value.problems[-1] == "data.csv: 70 more problems. Mend the first ones and read it again."
+
+
+def test_no_problem_hides_another(tmp_path: Path) -> None:
+    said = "is no number. Write a number with a decimal point and no unit."
+    assert problems(table(tmp_path, *(f"{i},1,x{i},45" for i in range(1, 101)), "1,1,90", "8,1,90,warm")) == (
+        "data.csv line 102: 3 cells under 4 column names. Write one cell per column, decimals with a point.",
+        *(f'data.csv line {i + 1}: dwell_min = "x{i}" {said}' for i in range(1, 4)),
+        f'data.csv lines 5 to 101, 97 of them: dwell_min = "..." {said}',
+        f'data.csv line 103: T_oil_C = "warm" {said}',
+    )
 
 
 @pytest.mark.parametrize("sign", [";", "\t"])
@@ -140,3 +152,45 @@ def test_the_accounts_of_a_sweep_do_not_warn(tmp_path: Path) -> None:
 def test_a_byte_order_mark_and_blank_lines_do_no_harm(tmp_path: Path) -> None:
     path = table(tmp_path, ROWS[0], "", ROWS[1], ",,,", header="\ufeff" + HEADER)
     assert list(read(path).lines) == [2, 4]
+
+
+@pytest.mark.parametrize("sign", [",", ";", "\t"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_excel_tells_what_separates_columns(tmp_path: Path, sign: str, encoding: str) -> None:
+    (path := tmp_path / "data.csv").write_text(
+        "\n".join((f"sep={sign}", "Öl_C,n", "45,1")).replace(",", sign), encoding
+    )
+    assert read_cells(path) == (["Öl_C", "n"], [(3, ["45", "1"])])
+    assert read_header(path) == ["Öl_C", "n"]
+
+
+def test_units_in_a_row_of_their_own(tmp_path: Path) -> None:
+    header, units = "test,n,M_ab [Nm],T_oil_C,wind_m_s,time", "-,1/min,N.m,[°C],m/s,hh:mm"
+    found = read_cells(table(tmp_path, units, "a,1,2,3,4,5", header=header))
+    assert found == (
+        ["test", "n [rpm]", "M_ab [Nm]", "T_oil_C", "wind_m_s", "time"],
+        [(3, ["a", "1", "2", "3", "4", "5"])],
+    )
+    assert problems(table(tmp_path, units.replace("°C", "K"), "a,1,2,3,4,5", header=header)) == (
+        'data.csv line 2: column "T_oil_C" is in degC by its name, and in K by the row of units. Mend one.',
+    )
+    assert len(read_cells(table(tmp_path, "A,ok", "V,bad", header="phase,state"))[1]) == 2
+
+
+def test_a_header_that_is_there_again_is_left_out(tmp_path: Path) -> None:
+    assert read(table(tmp_path, ROWS[0], HEADER, ROWS[1])).lines == (2, 4)
+
+
+@pytest.mark.parametrize("cell", ["", "nan", "NaN", "n/a", "N/A", "#NV", "-", "null"])
+def test_what_stands_for_no_reading(tmp_path: Path, cell: str) -> None:
+    path = table(tmp_path, f"{ROWS[0]},{cell}", f"{ROWS[1]},45", header=f"{HEADER},T_oil2_C")
+    assert math.isnan(read(path).columns["T_oil2_C"][0])
+
+
+def test_a_name_is_no_number_of_a_reading(tmp_path: Path) -> None:
+    column = Column("point", "number of the reading", "count", required=False)
+    _, found = parse(table(tmp_path, "P1", header="point"), [column])
+    assert found == [
+        'data.csv line 2: point = "P1" is no whole number. Write the number of the reading, or give the column another'
+        " name."
+    ]

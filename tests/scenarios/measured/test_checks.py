@@ -132,3 +132,49 @@ def test_points_far_outside_warn(read, helical):
     far = read("helical_two_stage", points, points=True)
     assert "n_input_rpm of 2 points is far outside of 580 rpm to 1450 rpm" in outlying(whole, far)[0]
     assert not outlying(whole, whole)
+
+
+def test_copies_of_readings_do_not_count(read, helical):
+    copied = read("helical_two_stage", {c: [v[3]] * 6 for c, v in helical.items()})
+    assert "data.csv lines 6 to 7, 2 of them: all readings are those of line 2. Keep one of them." in copied.warnings
+    assert "6 readings of 6 tests, 5 of them copies, are too few" in too_small(copied)[0]
+
+
+def test_magnitudes_a_little_below_zero_are_an_error_of_the_zero(read, helical):
+    card, torque = "sensors.T_output.magnitude = true\n", [-v for v in helical["T_output_Nm"]]
+    found = read("helical_two_stage", {**helical, "T_output_Nm": [-3.0, *torque[1:]]}, card)
+    assert found.values["T_output"][0] == -3.0
+    assert (
+        "line 2: T_output_Nm holds magnitudes and is below zero, in 1 of 6 rows, by 3 N.m at most" in found.warnings[0]
+    )
+    assert 'line 2: T_output_Nm = "-51" is out of range. The output.tau must be at least 0.' in problems(
+        read, "helical_two_stage", {**helical, "T_output_Nm": [-51, *torque[1:]]}, card
+    )
+    stated = card + 'channels.T_output.offset_sd = "20 N.m"\n'
+    assert read("helical_two_stage", {**helical, "T_output_Nm": [-51, *torque[1:]]}, stated).warnings
+
+
+@pytest.mark.parametrize(("eta", "warned"), [(0.97, 0), (1.04, 1)])
+def test_an_efficiency_above_1_is_told(read, helical, eta, warned):
+    columns = {**helical, "T_input_Nm": [-v / 12.4 / eta for v in helical["T_output_Nm"]]}
+    found = read("helical_two_stage", columns, 'sensors.T_input_Nm.reads = "input.tau"')
+    assert len(found.warnings) == warned
+    assert all("more than 1 in 6 of 6 rows. No gearbox has it" in text for text in found.warnings)
+    columns["T_input_Nm"] = [v * eta / 1.2 for v in columns["T_input_Nm"]]
+    assert "give an efficiency of 1.18" in problems(
+        read, "helical_two_stage", columns, 'sensors.T_input_Nm.reads = "input.tau"'
+    )
+
+
+@pytest.mark.parametrize("name", ["Mittelwert", "mean:", ""])
+def test_a_row_below_that_sums_up_is_no_test(read, helical, name):
+    columns = {"test": [*range(1, 7), name], **{c: [*v, v[2]] for c, v in helical.items()}}
+    assert f'line 8: test = "{name}" is no test. Write which one' in problems(read, "helical_two_stage", columns)
+
+
+def test_cells_rows_and_units_are_told_at_once(read, helical):
+    columns = {c.replace("T_amb_C", "T_amb [bar]"): list(v) for c, v in helical.items()}
+    columns["T_oil_C"][0], columns["T_wall_C"][1] = "warm", "1,2"
+    found = problems(read, "helical_two_stage", columns)
+    for text in ('T_oil_C = "warm"', "line 3: 6 cells under 5 column names", '"bar" does not fit degC'):
+        assert text in found, text

@@ -8,7 +8,7 @@ import tomllib
 import pytest
 from gearheat.scenarios.measured.card import Card, Oil, Protocol, read_card
 from gearheat.scenarios.measured.read import read_campaign
-from gearheat.scenarios.measured.sensors import CONTEXT
+from gearheat.scenarios.measured.sensors import CONTEXT, LOGGED
 from gearheat.scenarios.tables import SensorTable
 from gearheat.tools.docs.blocks import PAGES
 
@@ -41,6 +41,6 @@ def test_sensors_in_full_are_what_the_rig_file_takes():
 
 def test_every_key_and_column_is_on_the_page():
     keys = [field.alias or name for name, field in Card.model_fields.items() if not field.exclude]
-    assert not [key for key in (*keys, *CONTEXT, *Oil.model_fields) if f"`{key}`" not in PAGE and key != "name"]
+    assert not [key for key in (*keys, *CONTEXT, *LOGGED, *Oil.model_fields) if f"`{key}`" not in PAGE and key != "name"]
     told = set(Protocol.model_fields) - {"prose", "ambient", "reading"}
     assert not [key for key in told if f"`{key}`" not in PAGE]

@@ -1,6 +1,7 @@
 """Logs as files: CSV, gzipped CSV and Parquet, stretches, spikes, and files that are refused by name."""
 
 import gzip
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -133,6 +134,12 @@ def seconds(change):
     return lambda head, rows: (head.replace("time_utc", "time_s"), timed(head, rows)[1])
 
 
+def bare(change):
+    """The same in a column that says no unit."""
+    timed = seconds(change)
+    return lambda head, rows: (head.replace("time_utc", "time"), timed(head, rows)[1])
+
+
 def fahrenheit(head: str, rows: list[str]) -> tuple[str, list[str]]:
     for name in (h for h in head.split(",") if h.endswith("_C")):
         rows = cells_of(name, lambda cell, _: 1.8 * float(cell) + 32)(head, rows)[1]
@@ -160,6 +167,12 @@ WRONG = {
     "times that are none": (seconds(lambda t: "nan"), 'line 2: time_s is "nan"'),
     "a time that is infinite": (seconds(lambda t: "inf" if t == 6000 else t), 'line 12: time_s is "inf"'),
     "times backward": (seconds(lambda t: -t), "time does not go on"),
+    "a time twice": (seconds(lambda t: 600 * (t // 600 - (t > 6000))), "line 13: it has the time of the line above"),
+    "days of Excel": (bare(lambda t: 46109.83 + t / 86400), "46109.83 to .* as days since 1900 .* 2026-03-28 19:55"),
+    "a mean below": (
+        lambda h, r: (h, [*r, r[0].replace(r[0][:17], "Mittelwert")]),
+        'line 62: time_utc is "Mittelwert"',
+    ),
     "a zone now and then": (cells_of("time_utc", lambda c, k: c[: 16 + k % 2]), "30 times without a zone and 30 times"),
     "numbers among dates": (cells_of("time_utc", lambda c, k: k if k > 50 else c), "with a zone and 9 numbers"),
     "a block twice": (
@@ -178,6 +191,70 @@ def test_logs_are_checked_as_tables_are(tmp_path: Path, kind: str) -> None:
     head, rows = change(HEAD, lines())
     with pytest.raises(DataError, match=told):
         read(tmp_path / "a.csv", rows, head)
+
+
+def test_all_problems_of_a_log_come_at_once(tmp_path: Path) -> None:
+    rows = [row.replace(",1500,", ",fast,") for row in lines()]
+    rows[3], rows[7] = rows[3] + ",1", rows[6]
+    with pytest.raises(DataError) as raised:
+        read(tmp_path / "a.csv", rows, HEAD.replace("T_nacelle_C", "T_nacelle_bar"))
+    said = "\n".join(raised.value.problems)
+    for text in (
+        "line 5: 10 cells under 9 column names",
+        'line 4: n_hss_rpm is "fast"',
+        'lines 6 to 61, 56 of them: n_hss_rpm is "..."',
+        "line 9: it has the time of the line above. Keep one of the two.",
+        '"T_nacelle_C" drives the model (nacelle.T) and is missing.',
+    ):
+        assert text in said, text
+
+
+def test_a_time_without_a_unit_is_in_seconds_and_warns(tmp_path: Path) -> None:
+    head, rows = bare(lambda t: t / 60)(HEAD, lines())
+    log = read(tmp_path / "a.csv", rows, head)
+    assert log.step == 10.0
+    assert "a.csv: time has no unit and is taken for seconds, 10 s from sample to sample." in log.warnings[0]
+    said = read(tmp_path / "a.csv", rows, head.replace("time", "time [min]"))
+    by_card = read(tmp_path / "a.csv", rows, head, Card(units={"time": "min"}))
+    assert said.step == by_card.step == 600.0 and not said.warnings + by_card.warnings
+    assert not read(tmp_path / "a.csv", bare(lambda t: 1.4e9 + t)(HEAD, lines())[1], head).warnings
+
+
+@pytest.mark.parametrize(("day", "clock"), [("date", "time"), ("Datum", "Uhrzeit")])
+def test_day_and_time_of_day_in_two_columns(tmp_path: Path, day: str, clock: str) -> None:
+    rows = [row.replace("T0", ",").replace("T", ",").replace("Z", "", 1) for row in lines()]
+    log = read(tmp_path / "a.csv", rows, HEAD.replace("time_utc", f"{day},{clock}"))
+    assert log.dated and np.array_equal(log.time, read(tmp_path / "b.csv", lines()).time)
+
+
+def test_the_card_names_the_columns_of_time_and_segments(tmp_path: Path) -> None:
+    head, rows = seconds(lambda t: t / 60)(f"{HEAD},part", [f"{row},{'ab'[k > 9]}" for k, row in enumerate(lines())])
+    card = Card(columns={"time": "Takt", "segment": "part"}, units={"Takt": "min"})
+    log = read(tmp_path / "a.csv", rows, head.replace("time_s", "Takt"), card)
+    assert (log.step, log.stretch.max()) == (600.0, 1)
+    assert read(tmp_path / "a.csv", rows, head.replace("time_s", "Takt [min]"), Card(columns={"time": "Takt"})).n == N
+    assert read(tmp_path / "b.csv", lines(), card=card).dated  # the usual names hold for a log that lacks it
+
+
+def test_units_in_a_row_and_headers_again(tmp_path: Path) -> None:
+    units = "-,rpm,Nm,°C,°C,°C,°C,°C,m/s"
+    plain = read(tmp_path / "a.csv", lines())
+    text = "\n".join(["sep=,", HEAD.replace("_rpm", ""), units, *lines()[:20], HEAD.replace("_rpm", ""), *lines()[20:]])
+    (tmp_path / "b.csv").write_text(text, encoding="utf-16")
+    with gzip.open(tmp_path / "b.csv.gz", "wb") as file:
+        file.write((tmp_path / "b.csv").read_bytes())
+    for path in (tmp_path / "b.csv", tmp_path / "b.csv.gz"):
+        log = read_log(path, load("wind_turbine"), read_card(None))
+        assert np.array_equal(log.values["n_hss"], plain.values["n_hss"])
+        assert log.lines.tolist() == [*range(4, 24), *range(25, 65)]
+
+
+def test_a_slow_channel_has_no_two_readings_in_a_row(tmp_path: Path) -> None:
+    head, rows = cells_of("T_sump_C", lambda c, k: c if k % 3 == 0 else "n/a")(HEAD, lines())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        log = read(tmp_path / "a.csv", rows, head)
+    assert np.isfinite(log.values["T_sump"]).sum() == N // 3
 
 
 def test_a_machine_that_has_stopped_is_still_warm(tmp_path: Path) -> None:
