@@ -33,7 +33,7 @@ ENCODINGS = ("utf-8-sig", "cp1252")
 #: What may separate columns.
 SEPARATORS = ",;\t"
 #: A first line by which Excel is told what separates columns.
-_TOLD = re.compile(r"\"?sep=(.)", re.IGNORECASE)
+_TOLD = re.compile(r"\"?sep=(.?)", re.IGNORECASE)
 
 #: A number with a decimal comma, in a table whose columns no commas separate.
 _COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
@@ -209,7 +209,7 @@ def written(head: bytes) -> tuple[str, str]:
 
 def _separator(head: str) -> str:
     """What separates columns: as is told, else what stands most often between their names, else a comma."""
-    return told[1] if (told := _TOLD.match(head)) else max(SEPARATORS, key=head.count)
+    return told[1] if (told := _TOLD.match(head)) and told[1] else max(SEPARATORS, key=head.count)
 
 
 def tells_sign(row: Sequence[str]) -> bool:
@@ -218,7 +218,7 @@ def tells_sign(row: Sequence[str]) -> bool:
     Args:
         row: its cells
     """
-    return row[:1] == ["sep="]
+    return bool(row and _TOLD.fullmatch(row[0]))
 
 
 def plain(cells: Sequence[str], sign: str) -> list[str]:

@@ -203,8 +203,8 @@ def _below_zero(campaign: Campaign) -> Iterator[str]:
         if len(rows := np.flatnonzero(values < 0)):
             yield (
                 f"{place(campaign, rows[0])}: {sensor.column} holds magnitudes and is below zero, in {len(rows)} of"
-                f" {campaign.n} rows, by {format_value(sensor, -values.min())} at most. It is taken as it is, for an"
-                " error of its zero."
+                f" {campaign.n} rows, by {format_value(sensor, -np.nanmin(values))} at most. It is taken as it is, for"
+                " an error of its zero."
             )
 
 

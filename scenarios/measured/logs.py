@@ -213,7 +213,7 @@ def read_columns(
     Raises:
         DataError: it cannot be read, or its rows are not those of a table
     """
-    wrong = [] if problems is None else problems
+    odd: list[tuple[int, list[str]]] = []
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path, used)
@@ -225,8 +225,8 @@ def read_columns(
             while block := list(islice(rows, BLOCK)):
                 if sign != "," and not lines and (problem := two_readings(path.name, block)):
                     raise DataError(problem)
-                if ragged := ragged_rows(path.name, header, block):
-                    wrong += ragged
+                if any(len(row) != len(header) for _, row in block):
+                    odd += [(line, row) for line, row in block if len(row) != len(header)]
                     block = [(line, row) for line, row in block if len(row) == len(header)]
                 lines.append(np.array([line for line, _ in block], dtype=int))
                 columns = list(zip(*(row for _, row in block), strict=True))
@@ -236,8 +236,11 @@ def read_columns(
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
     except (OSError, EOFError, ValueError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
+    ragged = ragged_rows(path.name, header, odd)
     if problems is None:
-        raise_all(wrong, path.name)
+        raise_all(ragged, path.name)
+    else:
+        problems += ragged
     if not lines:
         raise DataError([f"{path.name}: holds no samples."])
     return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)

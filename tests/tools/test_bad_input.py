@@ -109,7 +109,7 @@ def test_duties_that_are_wrong(gearheat, tmp_path, text, words):
 
 def test_a_duty_that_is_not_there_and_one_that_is_no_text(gearheat, tmp_path):
     refused(gearheat("simulate", "planetary", "--duty", tmp_path / "no.csv", "-o", tmp_path / "o.csv"), "no such file")
-    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00\x9d" * 10)
+    (tmp_path / "bytes.csv").write_bytes(b"\xff\x00\x00\x9d" * 10)
     refused(gearheat("simulate", "planetary", "--duty", tmp_path / "bytes.csv", "-o", tmp_path / "o.csv"), "UTF-8")
 
 

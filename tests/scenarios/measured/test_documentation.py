@@ -41,6 +41,8 @@ def test_sensors_in_full_are_what_the_rig_file_takes():
 
 def test_every_key_and_column_is_on_the_page():
     keys = [field.alias or name for name, field in Card.model_fields.items() if not field.exclude]
-    assert not [key for key in (*keys, *CONTEXT, *LOGGED, *Oil.model_fields) if f"`{key}`" not in PAGE and key != "name"]
+    assert not [
+        key for key in (*keys, *CONTEXT, *LOGGED, *Oil.model_fields) if f"`{key}`" not in PAGE and key != "name"
+    ]
     told = set(Protocol.model_fields) - {"prose", "ambient", "reading"}
     assert not [key for key in told if f"`{key}`" not in PAGE]
