@@ -99,9 +99,7 @@ class Card(Strict):
         default=0.015, ge=0, le=1, description="relative scatter from day to day of what surfaces and coolers give off"
     )
     series: bool = Field(default=False, description="whether the tests were logged, too; for the reader")
-    columns: dict[str, str] = Field(
-        default={}, description="sensor, time of a log, path or optional column = column of your table"
-    )
+    columns: dict[str, str] = Field(default={}, description="sensor, path or optional column = column of your table")
     units: dict[str, str] = Field(default={}, description="column of the table = its unit")
     channels: dict[str, Channel] = Field(default={}, description="accuracy of a sensor")
     sensors: dict[str, CardSensor] = Field(default={}, description="a sensor that the rig lacks, or overruled keys")
