@@ -243,15 +243,18 @@ def _find_repeated_columns(campaign: Campaign) -> Iterator[str]:
                 )
 
 
+def _efficiencies(campaign: Campaign, nominal: Nominal) -> tuple[np.ndarray, str]:
+    """That of each row (n,), NaN where a shaft's power is not known, and the columns of the torques."""
+    powers = shaft_powers(campaign, nominal)
+    eta = efficiency(powers) if powers is not None and len(powers) > 1 else np.full(campaign.n, np.nan)
+    return eta, ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
+
+
 def _gains(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Efficiencies above 1 in most rows, as far as an instrument that errs explains them."""
-    powers = shaft_powers(campaign, nominal)
-    if powers is None or len(powers) < 2:
-        return
-    eta = efficiency(powers)
+    eta, torques = _efficiencies(campaign, nominal)
     odd = eta > BEST
     if odd.sum() * 2 > np.isfinite(eta).sum():
-        torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
         yield (
             f"{place(campaign, odd.argmax())}: the torques give an efficiency of {eta[odd][0]:.4g}, and of more than"
             f" {BEST:g} in {odd.sum()} of {campaign.n} rows. No gearbox has it: one of {torques} is taken to err."
@@ -260,10 +263,7 @@ def _gains(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
 
 def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Efficiencies that cannot be, in most rows."""
-    powers = shaft_powers(campaign, nominal)
-    if powers is None or len(powers) < 2:
-        return
-    eta = efficiency(powers)
+    eta, torques = _efficiencies(campaign, nominal)
     directions = np.unique(campaign.direction)
     limits = [(BEST_OF_ONE, campaign.direction == way) for way in directions]
     if len(directions) > 1:
@@ -275,7 +275,6 @@ def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     else:
         return
     row = int(np.flatnonzero(odd)[0])
-    torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
     yield (
         f"{place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {best:g} or less"
         f" than {POOREST:g} in {odd.sum()} of {rows.sum()} rows. Check units and signs of {torques}."

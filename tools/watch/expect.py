@@ -34,10 +34,10 @@ def expect(known: Fleet, window: Windows) -> Expected:
     sd = np.array([k.sd for k in own.knobs])
     duty = known.duty.at(window)
     z = known.curves.back(known.does(window) + np.vstack([np.zeros(len(sd)), np.diag(sd)]))
-    shown = own.run(window.some(np.zeros(len(z), dtype=int)), z, slopes=False).shown
+    passed = own.run(window.some(np.zeros(len(z), dtype=int)), z, slopes=False)
     read = np.where(window.counts[0, :, None], window.read[0], np.nan)
-    mean = means(np.where(np.isfinite(read), shown, np.nan))
+    mean = means(np.where(np.isfinite(read), passed.shown, np.nan))
     by = ((mean[1:] - mean[0]) / sd[:, None]).T
     spread = by @ (open_at(duty, (levels.covariance[0] + levels.season)[None])[0] + levels.window) @ by.T
-    alone = np.maximum(known.share * (window.piece.max() + 1), 1.0)
+    alone = np.maximum(known.share * np.isfinite(passed.error[0]).sum(axis=0), 1.0)
     return Expected(means(read[None])[0], mean[0], np.sqrt(np.diag(spread) + own.scatter**2 / alone))

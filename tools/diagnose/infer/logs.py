@@ -175,7 +175,7 @@ def fleet(
     slopes = np.where(errs, ERR, sd * [LAW if knob.cause else INNER for knob in own.knobs])
     slopes, n = np.tile(slopes, len(duty.usual)), 1 + len(siblings)
     usual = np.array([k.season or SEASON * k.sd for k in own.knobs])
-    tried = [first_levels(sd, usual, share * slopes, n, windows) for share in FOLLOWED for windows in WANDERED]
+    tried = [first_levels(sd, usual, share * slopes, n, wander) for share in FOLLOWED for wander in WANDERED]
     begun = tried[0]
     if not logs:
         return Fleet(own, past.some(np.zeros(0, dtype=int)), begun, 0.0, length, Curves({}, np.zeros(len(sd))), duty)
@@ -217,7 +217,7 @@ class Question:
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
-    """Run the logs in question at the machine's knobs, then where each season has moved to; progress as of `fleet`."""
+    """What the logs in question say of the knobs, told where each season has moved to; progress as of `fleet`."""
     own, levels, k = copy(found.filter), found.levels, len(found.filter.knobs)
     data = windows(logs, own.given, own.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)

@@ -130,8 +130,7 @@ def suit(own: Filter, data: Windows, z: np.ndarray) -> None:
             own.parts //= 2
             break
         found = finer
-    logs = [log_likelihood(passed(moments, own.parts)) for moments in (False, True)]
-    own.moments = logs[1] > logs[0]
+    own.moments = log_likelihood(passed(True, own.parts)) > log_likelihood(found)
 
 
 def _scatter(own: Filter, passed: Passed) -> np.ndarray:

@@ -22,8 +22,8 @@ typedef struct {
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
 } Logs;
 
-/* (n, k), (n, k, k); the others (n, L, shown). */
-typedef struct { double *slope, *curvature, *error, *shown; } Told;
+/* (n, k), (n, k, k), (n, L, shown). */
+typedef struct { double *slope, *curvature, *shown; } Told;
 
 #define LOG_GAMMA 0.29289321881345247560
 /* Newton's corrections at most, the last of them over the nominals, the longest one; a shorter one from some on, as a
@@ -178,8 +178,8 @@ static void log_update(Follow *F) {
 }
 
 /* Adds the errors of a sample to those of its piece, and behind it their means: each a t, as least squares that are weighted
-   anew at every pass. by_z (reads, k). */
-static void log_count(Follow *F, const lanes *by_z, lanes counts, lanes ends) {
+   anew at every pass. by_z (reads, k) is used up. */
+static void log_count(Follow *F, lanes *by_z, lanes counts, lanes ends) {
   const whole m = F->reads, k = F->logs->k;
   const double tails = *F->logs->tails;
   for (whole i = 0; i < m; i++) {
@@ -188,15 +188,15 @@ static void log_count(Follow *F, const lanes *by_z, lanes counts, lanes ends) {
     F->many[i] += there, F->sum[i] += there * F->e[i];
     for (whole c = 0; c < k; c++) F->sum_by[i * k + c] += lanes_only(there != 0, by_z[c * m + i]);
     if (!lanes_any(lanes_where(ends != 0))) continue;
-    const lanes n = lanes_only(ends != 0, F->many[i]), one = n + lanes_only(n == 0, lanes_all(1.0));
-    const lanes e = F->sum[i] / one / sd, weight = (tails + 1) / (tails + e * e) * lanes_only(n != 0, lanes_all(1.0));
+    const lanes n = lanes_only(ends != 0, F->many[i]), e = lanes_only(n != 0, F->sum[i] / n) / sd;
+    const lanes weight = (tails + 1) / (tails + e * e);
+    for (whole c = 0; c < k; c++) by_z[c * m + i] = lanes_only(n != 0, F->sum_by[i * k + c] / n) / sd;
     for (whole c = 0; c < k; c++) {
-      const lanes by = F->sum_by[i * k + c] / one / sd;
-      F->slope[c] += weight * by * e;
-      for (whole b = 0; b < k; b++) F->curvature[c * k + b] += weight * by * F->sum_by[i * k + b] / one / sd;
+      F->slope[c] += weight * by_z[c * m + i] * e;
+      for (whole b = 0; b < k; b++) F->curvature[c * k + b] += weight * by_z[c * m + i] * by_z[b * m + i];
     }
-    F->many[i] -= n, F->sum[i] -= lanes_only(n != 0, F->sum[i]);
-    for (whole c = 0; c < k; c++) F->sum_by[i * k + c] -= lanes_only(n != 0, F->sum_by[i * k + c]);
+    F->many[i] = lanes_only(ends == 0, F->many[i]), F->sum[i] = lanes_only(ends == 0, F->sum[i]);
+    for (whole c = 0; c < k; c++) F->sum_by[i * k + c] = lanes_only(ends == 0, F->sum_by[i * k + c]);
   }
 }
 
@@ -289,7 +289,7 @@ static void log_sample(Follow *F, const Told *told) {
     EACH {
       const double e = D->read[at[l] * m + i] - y[l];
       F->e[i][l] = isfinite(e) ? e : 0, F->variance[i][l] = isfinite(e) ? D->scatter[i] * D->scatter[i] : MISSING * MISSING;
-      if (R->on[l]) told->error[at[l] * m + i] = F->e[i][l], told->shown[at[l] * m + i] = y[l];
+      if (R->on[l]) told->shown[at[l] * m + i] = y[l];
     }
   }
   if (slopes) log_correct(F, corrects, counts, ends);

@@ -30,8 +30,6 @@ LEAST = 1.0
 #: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
 #: a temperature that the knobs explain.
 FOLLOWS = 0.04
-#: What a pass tells of each sample.
-ROWS = ("error", "shown")
 #: Windows that a thread takes at a time, those that go side by side; and those between two words on progress.
 SIDE = 8
 BLOCK = 64
@@ -115,8 +113,8 @@ class Filter:
         self.given, self.read = tuple(s.name for s in given), tuple(s.name for s in read)
         #: Repeatability of the inputs (given,) and of the readings (reads,).
         self.given_sd, self.read_sd = (np.array([s.repeat_sd for s in sensors]) for sensors in (given, read))
-        #: Scatter of each reading about the model, of means over pieces (reads,).
-        self.scatter = SCATTER * self.read_sd
+        #: Scatter of each reading while the filter settles, and about the model, of means over pieces (reads,).
+        self.settling = self.scatter = SCATTER * self.read_sd
         #: The least it may be (reads,).
         self.least = LEAST * self.read_sd
         #: Whether what logs hold was read at moments, and is no mean over a sample.
@@ -128,7 +126,7 @@ class Filter:
         self.state_of = np.array([names.index(path) if path in names else -1 for path in plant.shown])
         #: Standard deviation that the random walk of each state gains in one sample [K] (nx,).
         self.noise, own = drift.copy(), self.state_of >= 0
-        self.noise[self.state_of[own]] = FOLLOWS * SCATTER * self.read_sd[own]
+        self.noise[self.state_of[own]] = FOLLOWS * self.settling[own]
 
     def settings(self, z: np.ndarray) -> dict[str, np.ndarray]:
         """What knobs z (N, k), those of each window, set.
@@ -175,7 +173,7 @@ class Filter:
         for j, state in enumerate(self.state_of):
             if state >= 0:
                 x[:, state] = np.where(np.isfinite(first[:, j]), first[:, j], x[:, state])
-                sd[state] = SCATTER * self.read_sd[j]
+                sd[state] = self.settling[j]
         return x, sd
 
     def run(
@@ -221,13 +219,12 @@ class Filter:
             z0=self.plant.flat.starts("algebraic"),
             P0=sd**2,
             Q=self.noise**2,
-            scatter=SCATTER * self.read_sd,
+            scatter=self.settling,
             spread=self.scatter,
             step=np.array([data.step]),
             tails=np.array([TAILS]),
         )
-        found = {"slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k))}
-        found |= {name: np.full(data.read.shape, np.nan) for name in ROWS}
+        found = {"slope": np.zeros((n, k)), "curvature": np.zeros((n, k, k)), "shown": np.full(data.read.shape, np.nan)}
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
@@ -238,9 +235,9 @@ class Filter:
             share_rows(followed, last - first, SIDE, 0)
             if progress:
                 progress(float(lengths[:last].sum() / lengths.sum()))
-        error = by_piece(piece, np.where(data.counts[:, :, None] & np.isfinite(data.read), found.pop("error"), np.nan))
-        found, error = {name: a[np.argsort(order)] for name, a in found.items()}, error[np.argsort(order)]
-        return Passed(error=error, variance=self.scatter**2, **found)
+        found["error"] = by_piece(piece, data.read - found["shown"])
+        back = np.argsort(order)
+        return Passed(variance=self.scatter**2, **{name: values[back] for name, values in found.items()})
 
 
 def log_likelihood(passed: Passed) -> float:

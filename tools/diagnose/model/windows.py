@@ -32,7 +32,7 @@ class Windows:
         read: readings (N, L, reads), NaN where missing
         slow: means of the readings until then, of the last hours above all (N, L, reads)
         there: whether a sample is there (N, L)
-        counts: whether it counts, those before do not (N, L)
+        counts: whether it counts, the settling ones do not (N, L)
         machine: number of the log of each window (N,)
         time: middle of each window [s] (N,)
         rows: row of each sample in its log (N, L), -1 where there is none
@@ -114,13 +114,13 @@ def windows(
         given, read: names of the sensors that drive and that are compared, in order
         length, settling: samples; a length of 0 keeps every stretch whole, and nothing settles
     """
-    pieces = [(i, log, *piece) for i, log in enumerate(logs) for piece in _pieces(log.stretch, length, settling)]
-    n, longest = len(pieces), max(len(rows) for _, _, rows, _ in pieces)
+    parts = [(i, log, *part) for i, log in enumerate(logs) for part in _cut(log.stretch, length, settling)]
+    n, longest = len(parts), max(len(rows) for _, _, rows, _ in parts)
     u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
     slow, courses = y.copy(), [{name: _slow(log, name) for name in read if name in log.values} for log in logs]
     counts, there = np.zeros((2, n, longest), dtype=bool)
     at = np.full((n, longest), -1)
-    for i, (number, log, rows, skipped) in enumerate(pieces):
+    for i, (number, log, rows, skipped) in enumerate(parts):
         m = len(rows)
         signs = {s.name: s.signs[0] for s in log.sensors}
         u[i, :m] = np.array([_held(log.values[name][rows]) * signs[name] for name in given]).T
@@ -129,12 +129,12 @@ def windows(
                 y[i, :m, j] = log.values[name][rows] * signs[name]
                 slow[i, :m, j] = courses[number][name][rows] * signs[name]
         there[i, :m], counts[i, skipped:m], at[i, :m] = True, True, rows
-    machine = np.array([number for number, *_ in pieces])
-    time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in pieces])
+    machine = np.array([number for number, *_ in parts])
+    time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in parts])
     return Windows(u, y, there, counts, slow, machine, time, at, logs[0].step)
 
 
-def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[np.ndarray, int]]:
+def _cut(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[np.ndarray, int]]:
     """Rows of each window, and how many of them settle."""
     for number in np.unique(stretch):
         rows = np.flatnonzero(stretch == number)
@@ -143,8 +143,8 @@ def _pieces(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[n
             continue
         for part in np.array_split(rows, max(round(len(rows) / length), 1)):
             begin = max(part[0] - settling, rows[0])
-            skipped = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
-            yield np.arange(begin, part[-1] + 1), skipped
+            settled = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
+            yield np.arange(begin, part[-1] + 1), settled
 
 
 def _slow(log: Log, name: str) -> np.ndarray:
@@ -177,8 +177,12 @@ def at_duty(duty: np.ndarray, mean: np.ndarray) -> np.ndarray:
 
 def by_piece(piece: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Means of windows (n, L, reads) over each of their pieces (n, pieces, reads), NaN where a reading has none."""
-    there = [np.where(piece[:, :, None] == k, values, np.nan) for k in range(int(piece.max(initial=0)) + 1)]
-    return np.stack([means(one) for one in there], axis=1)
+    sums, many = np.zeros((2, len(piece), int(piece.max(initial=0)) + 1, values.shape[2]))
+    window, sample, read = np.nonzero((piece >= 0)[:, :, None] & np.isfinite(values))
+    at = window, piece[window, sample], read
+    np.add.at(sums, at, values[window, sample, read])
+    np.add.at(many, at, 1.0)
+    return np.asarray(sums / np.where(many > 0, many, np.nan))
 
 
 def of_readings(statistic: Callable[[np.ndarray], float], values: np.ndarray) -> np.ndarray:
