@@ -37,6 +37,7 @@ class Channel(Strict):
 
     repeat_sd: str | None = Field(default=None, description='scatter from reading to reading, "0.35 K"')
     offset_sd: str | None = Field(default=None, description='tolerance fixed over the campaign, "0.3 K"')
+    checked: bool = Field(default=False, description="beside a reference and found right: its errors are no cause")
     full_scale: float | None = Field(default=None, gt=0, description="range of the instrument, for the reader")
 
     _numbers = field_validator("repeat_sd", "offset_sd", mode="before")(_text)

@@ -142,7 +142,7 @@ class _Sensors:
         self.nominal = Nominal(scenario)
         self.problems = Problems()
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
-        self.driven: set[str] = set()
+        self.driven, self.checked = set[str](), set[str]()
 
     def complete(self) -> tuple[Sensor, ...]:
         """The card's keys over the rig's, and what is left out by rule."""
@@ -154,6 +154,7 @@ class _Sensors:
         for key, channel in self.card.channels.items():
             if (name := self._name(key)) is not None:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
+                self.checked |= {name} if channel.checked else set()
             else:
                 self._refuse(f"channels.{key}", key)
         self._priors()
@@ -297,6 +298,7 @@ class _Sensors:
             unit=unit,
             repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
             offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
+            checked=instrument.name in self.checked,
             signs=self._signs(instrument, kind),
         )
 

@@ -23,6 +23,7 @@ class Sensor:
         unit: of the column
         repeat_sd: scatter from reading to reading [SI]
         offset_sd: tolerance that is fixed over the campaign [SI]
+        checked: whether it was compared with a reference and found right
         signs: sign of the model's value in direction +1 and -1 where the column holds magnitudes, else (1, 1)
     """
 
@@ -34,6 +35,7 @@ class Sensor:
     unit: str
     repeat_sd: float
     offset_sd: float
+    checked: bool = False
     signs: tuple[float, float] = (1.0, 1.0)
 
     def sign(self, direction: np.ndarray) -> np.ndarray:

@@ -56,9 +56,10 @@ def _channel(sensor: Sensor) -> Channel:
     """Accuracies in units that a person writes."""
     if SI[sensor.kind] == "1":
         repeat, offset = (f"{100 * sd:.4g} percent" for sd in (sensor.repeat_sd, sensor.offset_sd))
-        return Channel(repeat_sd=repeat, offset_sd=offset)
+        return Channel(repeat_sd=repeat, offset_sd=offset, checked=sensor.checked)
     unit = "K (difference)" if SI[sensor.kind] == "K" else SI[sensor.kind]
-    return Channel(repeat_sd=text(sensor.repeat_sd, unit, 4), offset_sd=text(sensor.offset_sd, unit, 4))
+    repeat, offset = (text(sd, unit, 4) for sd in (sensor.repeat_sd, sensor.offset_sd))
+    return Channel(repeat_sd=repeat, offset_sd=offset, checked=sensor.checked)
 
 
 def _sensor(sensor: Sensor, known: Card) -> CardSensor:

@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from gearheat.scenarios.measured.card import Card, Channel
+from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.tools.diagnose.library.cause import Row, as_array
-from gearheat.tools.diagnose.library.sensors import BODY
+from gearheat.tools.diagnose.library.forms import Context
+from gearheat.tools.diagnose.library.knobs import knobs
+from gearheat.tools.diagnose.library.sensors import BODY, causes
 
 ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
 DIRECTION = np.array([1.0, -1.0] * 3)
@@ -178,3 +182,17 @@ def test_what_is_drawn_anew_with_each_mounting_may_follow_direction_or_speed(pla
     here = row(c, n_carrier=np.array([low, mid, high] * 2))
     powers = [as_array(v, 6) for path, v in form.values(theta, here).items() if path.endswith("P_ref")]
     assert sum(powers) == pytest.approx(3.0 * np.array([low - mid, 0.0, high - mid] * 2) / ((high - low) / 2), abs=0.1)
+
+
+def test_an_instrument_that_was_checked_is_right_but_may_be_in_the_wrong_place(planetary):
+    card = Card(channels={name: Channel(checked=True) for name in ("T_oil", "T_oil2", "T_amb", "T_sun")})
+    sensors = sensors_of(planetary.scenario, card)
+    assert {s.name for s in sensors if s.checked} == {"T_amb", "T_sun", "T_oil", "T_oil2"}
+    at = Context(planetary.roles, planetary.ranges, sensors)
+    kinds = {cause.id.split(".")[1] for cause in causes(at)}
+    assert kinds == {"speed", "torque", "wall_temp", "oil_temp"}
+    assert [cause.id for cause in causes(at) if ".oil_temp." in cause.id] == ["sensor.oil_temp.position"]
+    torque = next(cause for cause in causes(at) if cause.id == "sensor.torque.gain")
+    assert [form.name for form in torque.forms] == [""], "of two transducers one is left"
+    differ = {knob.sensor: knob.cause for knob in knobs(planetary.roles, sensors, 100.0) if knob.sensor}
+    assert not differ["T_oil"] and not differ["T_amb"] and differ["T_wall"] == "sensor.wall_temp.offset"

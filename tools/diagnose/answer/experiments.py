@@ -133,9 +133,9 @@ def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
 
 
 def _checks(campaign: Campaign) -> Iterator[Experiment]:
-    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp")):
+    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp") and not s.checked):
         yield Experiment("bath", "all thermometers in one bath, at 20 and at 60 degC", checks=bath)
-    torques = [s for s in campaign.sensors if s.kind == "torque"]
+    torques = [s for s in campaign.sensors if s.kind == "torque" and not s.checked]
     if torques:
         tare = tuple(Check(s.name, (0.0,) * 3, TARE * s.repeat_sd) for s in torques)
         yield Experiment("tare", "a tare of all torque transducers", checks=tare)
@@ -143,7 +143,8 @@ def _checks(campaign: Campaign) -> Iterator[Experiment]:
         lever = tuple(Check(s.name, (0.0, top[s.name]), TARE * s.repeat_sd, 5e-4 * top[s.name]) for s in torques)
         yield Experiment("lever_arm", "all torque transducers under a lever arm, empty and loaded", checks=lever)
     means = {s.name: float(np.nanmean(np.abs(campaign.values[s.name]))) for s in campaign.given}
-    of_kind = {kind: [s for s in campaign.given if s.kind == kind] for kind in ("ambient", "speed")}
+    driving = [s for s in campaign.given if not s.checked]
+    of_kind = {kind: [s for s in driving if s.kind == kind] for kind in ("ambient", "speed")}
     if rooms := tuple(Check(s.name, (means[s.name],) * 4, s.repeat_sd, THERMOMETER) for s in of_kind["ambient"]):
         yield Experiment("room_probe", "a reference thermometer for the room, away from the machine", checks=rooms)
     if speeds := tuple(Check(s.name, (means[s.name],) * 2, STROBOSCOPE * means[s.name]) for s in of_kind["speed"]):

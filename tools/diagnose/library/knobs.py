@@ -141,11 +141,12 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
     for s in sensors:
         kind = KINDS.get(s.kind)
         if kind and kind.unit == "K":
-            id = f"sensor.{s.kind}.offset"
+            id = "" if s.checked else f"sensor.{s.kind}.offset"
             doc = f"The {kind.words} reads too high or too low."
             yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, s.offset_sd / 2, sensor=s.name)
         elif s.kind in GAINS:
             doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
-            yield Knob(f"{s.name}: gain", f"sensor.{s.kind}.gain", doc, "1", usual, sd, sensor=s.name, gain=True)
+            id = "" if s.checked else f"sensor.{s.kind}.gain"
+            yield Knob(f"{s.name}: gain", id, doc, "1", usual, sd, sensor=s.name, gain=True)
             if s.kind == "torque" and s.offset_sd:
                 yield Knob(f"{s.name}: zero error", "", "", s.unit, s.offset_sd, s.offset_sd, sensor=s.name)

@@ -85,15 +85,17 @@ def ways(mode: Mode, sensor: Sensor) -> tuple[Mode, ...]:
 
 
 def causes(at: Context) -> Iterator[Cause]:
-    """All errors of all kinds of instruments that there are."""
+    """All errors of all kinds of instruments that there are; one that was checked may still be in the wrong place."""
     for name in dict.fromkeys(s.kind for s in at.sensors if s.kind in KINDS):
         own = [s for s in at.sensors if s.kind == name]
-        yield from _Instruments(name, own, at).causes()
+        doubtful = [s for s in own if not s.checked]
+        if doubtful:
+            yield from _Instruments(name, doubtful, at).causes()
         if name == "oil_temp":
             yield from position(at, own)
-        if name == "ambient":
-            yield from heated(at, own)
-        yield from swapped(at, own)
+        if doubtful and name == "ambient":
+            yield from heated(at, doubtful)
+        yield from swapped(at, doubtful)
 
 
 def wrong(sensor: Sensor, size: str, error: Error) -> Form:

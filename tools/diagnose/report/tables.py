@@ -172,7 +172,10 @@ def experiments(findings: Findings) -> list[Table]:
         for e in findings.next_experiment[:MOST]
     ]
     exposing = [(name_of(c.id), c.exposes) for c in list_causes(findings) if c.exposes]
-    note = f"Distances in standard deviations; below {APART:g} two causes look alike."
+    note = (
+        f"Distances in standard deviations; below {APART:g} two causes look alike. Rows of further tests go below the"
+        " others. An instrument that is found right gets `checked = true` in the card; else correct its column."
+    )
     return [
         Table("What to measure next", ("experiment", "separates", "now", "then"), rows, note),
         Table("What shows a cause directly", ("cause", "experiment"), exposing),
