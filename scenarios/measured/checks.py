@@ -29,8 +29,8 @@ FAR = 50.0
 POOREST = 0.2
 #: Efficiencies above this in most rows cannot be [1]: an instrument that errs raises them in one direction alone.
 BEST = 1.0
-#: The same in most rows of one direction.
-BEST_OF_ONE = 1.1
+#: The same in most rows of one direction: the zero of a transducer does more at part load, other units more yet.
+BEST_OF_ONE = 1.25
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
 #: A torque that is estimated and not measured is known within this share at worst.

@@ -1,8 +1,8 @@
-"""Logs that cannot be: blocks of samples that are there twice, and means that are judged as a measured table is."""
+"""Logs that cannot be: blocks that are there twice, readings that hang, means that no measured table would have."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -20,6 +20,10 @@ BLOCKS = 12
 DAY = 86400.0
 #: Samples in a row that no second block repeats.
 ALIKE = 24
+#: A reading that hangs stays the same for so many times as long as it does otherwise,
+HANGS = 5
+#: while a quantity that drives the rig moves over this share of its range in the log.
+MOVES = 0.3
 #: Odd number by which the rows of a block are told apart modulo 2^64: 2^64 over the golden ratio.
 MULTIPLIER = np.uint64(11400714819323198485)
 
@@ -53,7 +57,29 @@ def check_log(
     raise_all(list(placeholders(name, sensors, values, lines)), name)
     nominal = Nominal(drive_by(scenario, sensors))
     check(_as_campaign(name, sensors, values, lines, step), nominal, {})
-    return tuple(unmeasured(nominal, name, sensors))
+    return (*unmeasured(nominal, name, sensors), *_hanging(name, sensors, values, lines))
+
+
+def _hanging(
+    name: str, sensors: Sequence[Sensor], values: Mapping[str, np.ndarray], lines: np.ndarray
+) -> Iterator[str]:
+    """Readings that stay the same far longer than they do otherwise, while what drives the rig moves."""
+    driving = [values[s.name] for s in sensors if s.role == "given"]
+    for s in (s for s in sensors if s.role == "read"):
+        rows = np.flatnonzero(np.isfinite(values[s.name]))
+        shown = values[s.name][rows]
+        begins = np.flatnonzero(np.diff(shown, prepend=np.nan) != 0)
+        lengths = np.diff(np.append(begins, len(rows)))
+        *_, second, longest = np.append([0, 0], np.sort(lengths))
+        if longest < max(ALIKE, HANGS * second):
+            continue
+        at = begins[lengths.argmax()]
+        same = rows[at : at + longest]
+        if any(_span(column[same]) > MOVES * _span(column) for column in driving):
+            yield (
+                f"{name} lines {lines[same[0]]} to {lines[same[-1]]}: {s.column} is always the same, while what drives"
+                " the rig moves. It hangs, or was filled in. Leave these cells empty; else they count as readings."
+            )
 
 
 def _repeated(columns: Sequence[np.ndarray]) -> tuple[int, int] | None:
@@ -86,6 +112,11 @@ def _as_campaign(
     means = {sensor: np.array([_mean(column[block]) for block in blocks]) for sensor, column in values.items()}
     dwell = np.full(n, np.inf if span >= DAY else span)
     return Campaign.of(name, sensors, means, np.arange(n), order=np.arange(n), dwell=dwell, lines=lines[first])
+
+
+def _span(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.ptp(known)) if len(known) else 0.0
 
 
 def _mean(values: np.ndarray) -> float:

@@ -1,6 +1,7 @@
 """Logs as files: CSV, gzipped CSV and Parquet, stretches, spikes, and files that are refused by name."""
 
 import gzip
+import re
 import warnings
 from pathlib import Path
 
@@ -207,6 +208,22 @@ def test_all_problems_of_a_log_come_at_once(tmp_path: Path) -> None:
         '"T_nacelle_C" drives the model (nacelle.T) and is missing.',
     ):
         assert text in said, text
+
+
+def test_a_reading_that_hangs_is_told(tmp_path: Path) -> None:
+    """Always the same far longer than otherwise; not while the machine goes on alike, nor of a coarse thermometer."""
+    moving = []
+    for k, row in enumerate(lines(140)):
+        stamp, _, torque, sump, *_ = row.split(",")
+        speed = 1500 - 400 * (k // 20 % 2)
+        moving.append(f"{stamp},{speed},{torque},{sump},{50 + k % 3},{60 + k % 4},{61 + k // 30},20.0,7.1")
+    assert not read(tmp_path / "a.csv", moving).warnings
+    hung = [re.sub(r"^(([^,]*,){3})[^,]*", r"\g<1>55.02", row) for row in moving]
+    hangs = [*moving[:60], *hung[60:120], *moving[120:]]
+    (told,) = read(tmp_path / "a.csv", hangs).warnings
+    assert told.startswith("a.csv lines 62 to 121: T_sump_C is always the same, while what drives the rig moves.")
+    alike = [row.replace(",1100,", ",1500,") for row in hangs]
+    assert not read(tmp_path / "a.csv", alike).warnings
 
 
 def test_a_time_without_a_unit_is_in_seconds_and_warns(tmp_path: Path) -> None:
