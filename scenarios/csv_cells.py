@@ -56,14 +56,15 @@ def ragged_rows(name: str, header: Sequence[str], rows: Iterable[tuple[int, Sequ
     return fold(name, ((line, said.format(n, len(header))) for line, n in odd))
 
 
-def two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]]) -> str | None:
+def two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]], sure: set[str] | None = None) -> str | None:
     """Where a point or a comma may separate decimals or thousands, with both readings; None where all is clear.
 
     Args:
         name: of the file
         rows: line and cells of each
+        sure: takes the signs that separate decimals beyond doubt; those of earlier rows are in it
     """
-    sure: set[str] = set()
+    sure = set() if sure is None else sure
     unsure: dict[str, tuple[int, str]] = {}
     for line, cell in ((line, cell.strip()) for line, row in rows for cell in row):
         if match := _GROUP.fullmatch(cell):

@@ -194,10 +194,10 @@ def _lines(path: Path, head_only: bool = False) -> list[tuple[int, list[str]]]:
 
 
 def written(head: bytes) -> tuple[str, str]:
-    """Encoding of a table and what separates its columns, by its first line.
+    """Encoding of a table and what separates its columns, by its first lines.
 
     Args:
-        head: the line
+        head: the lines: of names, and that of units below it
     """
     if head.startswith(WIDE):
         return "utf-16", _separator(head.decode("utf-16", errors="ignore"))  # the line ends within a letter
@@ -209,7 +209,8 @@ def written(head: bytes) -> tuple[str, str]:
 
 def _separator(head: str) -> str:
     """What separates columns: as is told, else what stands most often between their names, else a comma."""
-    return told[1] if (told := _TOLD.match(head)) and told[1] else max(SEPARATORS, key=head.count)
+    names = head.partition("\n")[0]
+    return told[1] if (told := _TOLD.match(head)) and told[1] else max(SEPARATORS, key=names.count)
 
 
 def tells_sign(row: Sequence[str]) -> bool:

@@ -27,7 +27,7 @@ from .read import place_sensor
 from .sensors import SI, sensors_of, si_of
 from .shafts import torques
 from .table import Sensed, Sensor
-from .times import find_days, find_times, join_days, seconds
+from .times import find_days, find_times, join_days, seconds, time_column
 
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
@@ -178,15 +178,7 @@ def _timed(
 
     The columns of time and of segments are taken out. Raises DataError where there are no such times.
     """
-    times = find_times(cells, card.columns.get("time", ""))
-    if len(times) > 1:
-        raise DataError(f"{name} line 1: {' and '.join(times)} are columns of time. Keep one.")
-    if not times:
-        raise DataError(
-            f"{name} line 1: there is no column of time. Name yours in the card,"
-            ' columns = { "time" = "..." }, or call it "time_utc" or "time_s".'
-        )
-    column, problems = times[0], Problems()
+    column, problems = time_column(cells, card.columns.get("time", ""), f"{name} line 1"), Problems()
     unit = card.units.get(column, split_unit(column)[1])
     time, dated = seconds(join_days(cells, column), column, name, lines, problems, unit)
     raise_all(problems, name)
@@ -219,7 +211,7 @@ def read_columns(
             return _parquet(path, used)
         text, sign = _open(path)
         with text as file:
-            header, rows = _head(path.name, csv.reader(file, delimiter=sign))
+            header, rows = read_head(path.name, csv.reader(file, delimiter=sign))
             kept, lines = used(header), list[np.ndarray]()
             parts: dict[str, list[Sequence[Any]]] = {h: [] for h in header if h in kept}
             while block := list(islice(rows, BLOCK)):
@@ -246,8 +238,16 @@ def read_columns(
     return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
 
 
-def _head(name: str, reader: Any) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Header with the units of a row under it, and the line and cells of the other rows."""
+def read_head(name: str, reader: Any) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """Header with the units of a row under it, and the line and cells of the other rows; one row is read ahead.
+
+    Args:
+        name: of the file
+        reader: rows of cells, as that of `csv`
+
+    Raises:
+        DataError: what is wrong with the header
+    """
     first: list[str] = next(reader, [])
     names: list[str] = next(reader, []) if tells_sign(first) else first
     header = [h.strip() for h in names]
@@ -280,7 +280,7 @@ def _open(path: Path) -> tuple[IO[str], str]:
     """A table as text, and what separates its columns; below its head there are numbers, alike in all encodings."""
     opened = gzip.open if reading(path).suffix == ".gz" else open
     with opened(path, "rb") as file:
-        encoding, sign = written(file.readline())
+        encoding, sign = written(b"".join(islice(file, 3)))
     return cast(IO[str], opened(path, "rt", encoding=encoding, errors="replace")), sign
 
 

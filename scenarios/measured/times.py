@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.errors import Problems
+from ...model.errors import DataError, Problems
 from ..csv_cells import fold
 from ..csv_table import in_si, split_unit
 from ..duty import LATEST, YEAR
@@ -30,8 +30,9 @@ EXCEL_DAYS = (30000.0, 60000.0)
 EXCEL_ZERO = datetime(1899, 12, 30, tzinfo=UTC)
 #: A date as it is written in Germany.
 _DATE = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
-#: What a column holds that is no calendar's.
+#: What a column holds that is no calendar's, and those of which nothing says the unit.
 NUMBERS = "numbers"
+BARE = "numbers without a unit"
 #: A table of so many rows, taken at even steps of at most so long [s], is a log.
 LOGGED_ROWS = 50
 LOGGED_STEP = 900.0
@@ -50,6 +51,27 @@ def find_times(header: Iterable[str], named: str = "") -> list[str]:
     spelt = {h: {re.sub("[ /]", "_", name.casefold()) for name in own} for h, own in names.items()}
     ways = ([h for h, own in names.items() if named in own], *([h for h in names if spelt[h] & {*w}] for w in NAMED))
     return next((found for found in ways if found), [])
+
+
+def time_column(header: Iterable[str], named: str, name: str) -> str:
+    """The one column of time.
+
+    Args:
+        header, named: as of `find_times`
+        name: of the file, for messages
+
+    Raises:
+        DataError: there is none, or more than one
+    """
+    times = find_times(header, named)
+    if len(times) > 1:
+        raise DataError(f"{name}: {' and '.join(times)} are columns of time. Keep one.")
+    if not times:
+        raise DataError(
+            f'{name}: there is no column of time. Name yours in the card, columns = {{ "time" = "..." }}, or call it'
+            ' "time_utc" or "time_s".'
+        )
+    return times[0]
 
 
 def find_days(header: Iterable[str]) -> list[str]:

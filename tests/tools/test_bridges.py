@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.docs.blocks import PAGES, blocks
 from gearheat.tools.watch.sources import Stream
@@ -38,7 +39,7 @@ def machines(process: "subprocess.Popen[bytes]", windows: int, every: int) -> St
     """A store that has taken what a bridge prints, once so many windows are answered."""
     store, answer = Store(None, ""), {"verdict": "consistent", "causes": []}
     assert process.stdout
-    watch = Watch(SENSORS, "segment", store, lambda *asked: {**answer, "rows": asked[3]}, every, lambda: 4e9)
+    watch = Watch(SENSORS, Card(), store, lambda *asked: {**answer, "rows": asked[3]}, every, lambda: 4e9)
     looks = watch.follow(Stream(process.stdout))  # type: ignore[arg-type]
     while len(list(store.events(0))) < windows:
         next(looks)

@@ -14,6 +14,7 @@ from random import Random
 import gearheat as gh
 import pytest
 from gearheat.model.errors import DataError
+from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.watch.broker import Broker
 from gearheat.tools.watch.store import Store
@@ -86,7 +87,7 @@ def answer(machine, kind, times, rows) -> dict:  # type: ignore[no-untyped-def]
 def follow(state: Path | None, port: int, publish: str = "") -> Iterator[Store]:
     store = Store(state, "")
     broker = Broker(f"mqtt://127.0.0.1:{port}/farm/#", state and "session", publish)
-    for _ in Watch(SENSORS, "segment", store, answer, EVERY, lambda: 1.5e9).follow(broker):
+    for _ in Watch(SENSORS, Card(), store, answer, EVERY, lambda: 1.5e9).follow(broker):
         yield store
 
 

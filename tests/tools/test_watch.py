@@ -8,6 +8,7 @@ from pathlib import Path
 import gearheat as gh
 import pytest
 from gearheat.model.errors import DataError
+from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.diagnose.request import Request
 from gearheat.tools.show.event_lines import as_text, opened
@@ -38,7 +39,7 @@ def answer(machine, kind, times, rows) -> dict:
 
 
 def events(sensors: tuple[Sensor, ...], source: Source, store: Store) -> Iterator[None]:
-    return Watch(sensors, "segment", store, answer, EVERY, lambda: 1.5e9).follow(source)
+    return Watch(sensors, Card(), store, answer, EVERY, lambda: 1.5e9).follow(source)
 
 
 def said(store: Store) -> list[dict]:
@@ -98,7 +99,7 @@ def test_what_is_late_or_there_twice_counts_once(sensors: tuple[Sensor, ...]) ->
         (line(3, 99), "T_sump_C at a time that is there with another value"),
         ("noon,1,2,3,4", 'its time is "noon"'),
         ("2099" + line(4)[4:], "has not come yet"),
-        ("12," + line(4).partition(",")[2], "has numbers, earlier samples times with a zone"),
+        ("12," + line(4).partition(",")[2], "has numbers without a unit, earlier samples times with a zone"),
         (line(4) + ",7", "has 6 cells, the header has 5"),
     ],
 )
@@ -153,7 +154,7 @@ def test_a_source_that_is_silent_is_told_every_hour(sensors: tuple[Sensor, ...])
         def kept(self) -> None:
             pass
 
-    for _ in Watch(sensors, "segment", store, answer, EVERY, lambda: next(clock)).follow(Silent()):
+    for _ in Watch(sensors, Card(), store, answer, EVERY, lambda: next(clock)).follow(Silent()):
         pass
     first, second = (event["text"] for event in said(store))
     assert first.startswith("no sample has come for 60 min, at 2017-07-14T0") and second > first
@@ -176,7 +177,7 @@ def test_the_page_tells_each_machine_with_bands_cause_and_since_when(
 
     for machine in ("one", "two"):
         lines = io.BytesIO("\n".join((HEAD, *map(line, range(11)), "x,1,2,3,4")).encode())
-        for _ in Watch(sensors, "segment", store, told, EVERY, lambda: 1.5e9).follow(Stream(lines, machine)):
+        for _ in Watch(sensors, Card(), store, told, EVERY, lambda: 1.5e9).follow(Stream(lines, machine)):
             pass
     html = page_of(store, "wind turbine")
     assert html.index("<h2>two</h2>") < html.index("<h2>one</h2>")

@@ -100,20 +100,13 @@ def watch(
     healthy = read_logs(inputs)
     judge = Judge(inputs, healthy.reference, healthy.siblings)
     store = Store(None if state is None else Path(state), f"{identity(request)} {every}")
-    segment = inputs.card.columns.get("segment", "segment")
     spread = one_by_one if scheduler is None else partial(on_cluster, scheduler)
-    own = Watch(sensors_of(inputs.scenario, inputs.card), segment, store, judge.answer, every, time.time, spread)
-    taken = _source(str(source), store, once, state, publish)
+    own = Watch(sensors_of(inputs.scenario, inputs.card), inputs.card, store, judge.answer, every, time.time, spread)
+    taken: Source = Stream() if str(source) == "-" else Files(Path(source), store.place, once)
+    if broker:
+        kept = None if state is None else hashlib.sha256(f"{Path(state).resolve()} {source}".encode()).hexdigest()
+        taken = Broker(str(source), kept and f"gearheat-{kept[:12]}", publish, inputs.card.columns.get("time", ""))
     return _events(own, store, taken, after, None if page is None else Path(page), inputs.scenario.name)
-
-
-def _source(source: str, store: Store, once: bool, state: File | None, publish: str) -> Source:
-    if source == "-":
-        return Stream()
-    if not source.startswith(tuple(PORTS)):
-        return Files(Path(source), store.place, once)
-    kept = None if state is None else hashlib.sha256(f"{Path(state).resolve()} {source}".encode()).hexdigest()
-    return Broker(source, kept and f"gearheat-{kept[:12]}", publish)
 
 
 def _events(

@@ -34,12 +34,13 @@ class Broker:
         address: mqtt://USER:PASSWORD@HOST:PORT/TOPIC, mqtts for TLS; user, password and port may be left out
         session: name under which the broker keeps what comes while nobody is there; None without
         publish: topic under which events go out, that of their machine added; none if empty
+        time: column of time by the card; "" where it names none
 
     Raises:
         DataError: the address is none, or paho-mqtt is not installed
     """
 
-    def __init__(self, address: str, session: str | None, publish: str = "") -> None:
+    def __init__(self, address: str, session: str | None, publish: str = "", time: str = "") -> None:
         scheme, _, rest = address.partition("://")
         where, _, self.topic = rest.partition("/")
         at = urlsplit(f"//{where}")
@@ -54,7 +55,7 @@ class Broker:
         from paho.mqtt.client import Client
         from paho.mqtt.enums import CallbackAPIVersion
 
-        self.publish = publish
+        self.publish, self.time = publish, time
         self.client = Client(CallbackAPIVersion.VERSION2, session or "", clean_session=session is None, manual_ack=True)
         if at.username:
             self.client.username_pw_set(at.username, at.password)
@@ -115,7 +116,7 @@ class Broker:
             cells = json.loads(text)
         except ValueError:
             cells = None
-        if not isinstance(cells, dict) or not find_times(cells):
+        if not isinstance(cells, dict) or not find_times(cells, self.time):
             wanted = '{"time_utc": ..., COLUMN: ...}, or in the topic of a column {"time_utc": ..., "value": ...}'
             return Row(last, {}, where, problem=f'{where}: "{text[:60]}" is no sample; expected {wanted}')
         if VALUE in cells:

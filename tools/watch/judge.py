@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...scenarios.measured.logs import Log, log_of
-from ...scenarios.measured.times import NUMBERS
+from ...scenarios.measured.times import BARE, NUMBERS
 from ..diagnose.answer import channels
 from ..diagnose.answer.findings import Cause
 from ..diagnose.infer.logs import Fleet, fleet, question
@@ -56,11 +56,10 @@ class Judge:
         """
         names = dict.fromkeys(name for row in rows for name in row)
         columns: dict[str, Any] = {name: [row.get(name) for row in rows] for name in names}
-        if kind == NUMBERS:
-            columns["time_s"] = times
-        else:
-            columns["time_utc"] = [datetime.fromtimestamp(t, UTC) for t in times]
-        return log_of(machine, columns, np.arange(2, len(rows) + 2), self.inputs.scenario, self.inputs.card)
+        time = {NUMBERS: "time_s", BARE: "time"}.get(kind, "time_utc")
+        columns[time] = times if kind in (NUMBERS, BARE) else [datetime.fromtimestamp(t, UTC) for t in times]
+        card = self.inputs.card.model_copy(update={"columns": {**self.inputs.card.columns, "time": time}})
+        return log_of(machine, columns, np.arange(2, len(rows) + 2), self.inputs.scenario, card)
 
     def known(self, log: Log) -> tuple[Fleet, tuple[Formula, ...]]:
         """What the healthy logs say of the machine of a log and its type, and what it can show; read once."""

@@ -5,16 +5,18 @@ from __future__ import annotations
 import csv
 import sys
 import time
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from queue import Empty, Queue
 from threading import Thread
 from typing import IO, Any, Protocol
 
 from ...model.errors import DataError
+from ...scenarios.csv_cells import two_readings
 from ...scenarios.csv_table import plain, written
-from ...scenarios.measured.logs import read_columns
+from ...scenarios.measured.logs import BLOCK, read_columns, read_head
 
 #: Between two looks at files that may have grown [s].
 POLL = 1.0
@@ -23,6 +25,10 @@ GROWING = (".csv",)
 WHOLE = (".csv.gz", ".parquet", ".pq")
 #: Column that names the machine of a row.
 MACHINE = "machine"
+#: What a stream gives last.
+END = "end"
+#: Encodings whose letters have two bytes, and their ends of lines, by the mark that they begin with.
+WIDE = {BOM_UTF16_LE: ("utf-16-le", b"\n\0"), BOM_UTF16_BE: ("utf-16-be", b"\0\n")}
 
 
 @dataclass(frozen=True)
@@ -97,23 +103,11 @@ class Files:
     def _added(self, machine: str, path: Path) -> Iterator[Row]:
         """Whole lines after the last one that was read."""
         name = self._name(path)
-        offset, number = self.place(name) or (0, 1)
+        place = self.place(name)
+        if place and path.stat().st_size < place[0]:  # made anew: what is known counts once
+            place = None
         with path.open("rb") as file:
-            head = file.readline()
-            if not head.endswith(b"\n"):
-                return
-            if offset < len(head) or path.stat().st_size < offset:  # made anew: what is known counts once
-                offset, number = len(head), 1
-            how = written(head)
-            header = _cells_of(head, *how)
-            file.seek(offset)
-            for raw in file:
-                if not (raw.endswith(b"\n") or self.once):
-                    return
-                offset, number = offset + len(raw), number + 1
-                if raw.strip():
-                    cells = _cells_of(raw, *how)
-                    yield _row(machine, header, cells, f"{path.name} line {number}", name, [offset, number])
+            yield from samples(file, machine, path.name, self.once, name, place)
 
     def _changed(self, machine: str, path: Path) -> Iterator[Row]:
         """Rows after the last one that was read, of a file that has been written anew."""
@@ -121,12 +115,13 @@ class Files:
         if self._seen.get(path) == (state.st_mtime_ns, state.st_size):
             return
         self._seen[path] = state.st_mtime_ns, state.st_size
-        name = self._name(path)
+        name, odd = self._name(path), list[str]()
         try:
-            columns, lines = read_columns(path, lambda header: header)
+            columns, lines = read_columns(path, lambda header: header, odd)
         except DataError as error:
             yield Row(machine, {}, path.name, problem=str(error))
             return
+        yield from (Row(machine, {}, path.name, problem=problem) for problem in odd)
         begun = self.place(name) or 0
         for k in range(begun if begun <= len(lines) else 0, len(lines)):
             cells = [column[k] for column in columns.values()]
@@ -146,29 +141,96 @@ class Stream:
 
     def rows(self) -> Iterator[Row | None]:
         """Rows as they come."""
-        queue: Queue[bytes] = Queue(10_000)
+        queue: Queue[Row | str] = Queue(10_000)
         Thread(target=self._read, args=[queue], daemon=True).start()
-        header, how = list[str](), written(b"")
-        number = 0
-        for raw in queued(queue):
-            if raw == b"":
+        for row in queued(queue):
+            if row == END:
                 return
-            number += raw is not None
-            if raw is None or not raw.strip():
-                yield None
-            elif not header:
-                how = written(raw)
-                header = _cells_of(raw, *how)
-            else:
-                yield _row(self.machine, header, _cells_of(raw, *how), f"line {number}", "", None)
+            yield row
 
     def kept(self) -> None:
         """A stream comes once."""
 
-    def _read(self, queue: Queue[bytes]) -> None:
-        for raw in self.file:
-            queue.put(raw)
-        queue.put(b"")
+    def _read(self, queue: Queue[Row | str]) -> None:
+        try:
+            for row in samples(self.file, self.machine, "stdin"):
+                queue.put(row)
+        finally:
+            queue.put(END)
+
+
+@dataclass
+class _Lines:
+    """Whole lines as rows of cells, and how far they have been read.
+
+    Args:
+        file: at its begin
+        ended: whether no more can come, so that the last line is whole without an end
+    """
+
+    file: IO[bytes]
+    ended: bool
+    offset: int = 0
+    line_num: int = 0
+
+    def __iter__(self) -> Iterator[list[str]]:
+        return self
+
+    def __next__(self) -> list[str]:
+        raw = more = self.file.readline()
+        if not self.line_num:
+            self._wide, self._end = WIDE.get(raw[:2], ("", b"\n"))
+            self.sign = written(raw)[1]
+        while more and self._wide and (len(raw) % 2 or not raw.endswith(self._end)):  # within a letter
+            raw += (more := self.file.read(1) if len(raw) % 2 else self.file.readline())
+        if not raw or not (self.ended or raw.endswith(self._end)):
+            raise StopIteration
+        self.offset, self.line_num = self.offset + len(raw), self.line_num + 1
+        text = raw.decode(self._wide or written(raw)[0], errors="replace").removeprefix("\ufeff")
+        return next(csv.reader([text], delimiter=self.sign), [])
+
+    def skip(self, offset: int, line: int) -> None:
+        """Go to the place behind a line."""
+        if offset > self.offset:
+            self.offset, self.line_num = self.file.seek(offset), line
+
+
+def samples(
+    file: IO[bytes], machine: str, name: str, ended: bool = True, source: str = "", place: Any = None
+) -> Iterator[Row]:
+    """Samples of a table, line by line; those whose decimals have two readings wait for one that decides.
+
+    Args:
+        file: the table, at its begin
+        machine: whose samples they are, where no column says it
+        name: of the file, for people
+        ended: whether no more can come, so that the last line is whole without an end
+        source: by which its place is kept
+        place: how far it has been read
+    """
+    lines, held = _Lines(file, ended), list[tuple[int, list[str], int]]()
+    try:
+        header, rows = read_head(name, lines)
+    except DataError as error:
+        yield Row(machine, {}, name, problem=str(error))
+        return
+    offset, last, *signs = place or (0, 0)
+    lines.skip(offset, last)
+    sure, problem = set(signs), None
+    for line, cells in rows:
+        if line <= last:
+            continue
+        held.append((line, cells, lines.offset))
+        problem = lines.sign != "," and two_readings(name, [one[:2] for one in held], sure)
+        if problem and not sure and len(held) < BLOCK:
+            continue
+        for number, found, end in held:
+            known = [end, number, *sorted(sure)]
+            row = _row(machine, header, plain(found, lines.sign), f"{name} line {number}", source, known)
+            yield replace(row, cells={}, problem=problem) if problem else row
+        held.clear()
+    if held and ended:
+        yield Row(machine, {}, name, problem=str(problem))
 
 
 def queued(queue: Queue[Any]) -> Iterator[Any]:
@@ -182,10 +244,6 @@ def queued(queue: Queue[Any]) -> Iterator[Any]:
 
 def _stem(name: str) -> str:
     return next((name.removesuffix(end) for end in (*WHOLE, *GROWING) if name.endswith(end)), name)
-
-
-def _cells_of(raw: bytes, encoding: str, sign: str) -> list[str]:
-    return plain(next(csv.reader([raw.decode(encoding, errors="replace")], delimiter=sign), []), sign)
 
 
 def _row(machine: str, header: list[str], cells: list[Any], where: str, source: str, place: Any) -> Row:

@@ -14,9 +14,10 @@ import numpy as np
 from ...model.errors import DataError, GearheatError
 from ...scenarios.csv_table import in_si, split_unit
 from ...scenarios.given import scenario_of
-from ...scenarios.measured.logs import parse_number
+from ...scenarios.measured.card import Card
+from ...scenarios.measured.logs import SINCE_1970, parse_number
 from ...scenarios.measured.table import Sensor
-from ...scenarios.measured.times import NUMBERS, find_times, parse_time
+from ...scenarios.measured.times import BARE, NUMBERS, join_days, parse_time, time_column
 from ...scenarios.write import rig_text
 from ..diagnose.request import Request
 from .sources import Row, Source
@@ -57,7 +58,7 @@ class Watch:
 
     Args:
         sensors: of rig and card
-        segment: column that tells stretches apart
+        card: its columns of time and of segments, and the unit of the former
         store: what has come and was said
         judge: what the samples of a machine say
         every: samples of a window
@@ -68,7 +69,7 @@ class Watch:
     def __init__(
         self,
         sensors: Iterable[Sensor],
-        segment: str,
+        card: Card,
         store: Store,
         judge: Judge,
         every: int,
@@ -77,7 +78,7 @@ class Watch:
     ) -> None:
         self.store, self.judge, self.every, self.clock, self.spread = store, judge, every, clock, spread
         self._known = {name for s in sensors for name in (s.column, split_unit(s.column)[0])}
-        self._segment = segment
+        self._card, self._segment = card, card.columns.get("segment", "segment")
 
     def follow(self, source: Source) -> Iterator[None]:
         """Take what comes; yields after everything that was written.
@@ -139,14 +140,19 @@ class Watch:
 
     def _time(self, row: Row) -> tuple[float, str]:
         """Time [s] and kind of time of a row."""
-        column = next(iter(find_times(row.cells)), "")
+        column = time_column(row.cells, self._card.columns.get("time", ""), row.where.partition(" line ")[0])
+        cell = join_days({name: [cell] for name, cell in row.cells.items()}, column)[0]
         try:
-            time, kind = parse_time(row.cells[column])
-        except (KeyError, TypeError, ValueError, OverflowError):
-            said = f'its time is "{row.cells[column]}"' if column else "has no time"
-            raise DataError(f"{row.where}: {said}; the row is left out") from None
+            time, kind = parse_time(cell)
+        except (TypeError, ValueError, OverflowError):
+            raise DataError(f'{row.where}: its time is "{cell}"; the row is left out') from None
         if kind == NUMBERS:
-            return float(in_si(np.array([time]), split_unit(column)[1] or "s", "s", name=row.where)[0]), kind
+            unit = self._card.units.get(column, split_unit(column)[1])
+            kind = NUMBERS if unit or time >= SINCE_1970 else BARE
+            if kind == BARE and row.machine not in self.store.machines:
+                said = f"{row.where}: {column} has no unit and is taken for seconds. The card may name another: [units]"
+                self._warn(Machine(row.machine, ""), said)
+            return float(in_si(np.array([time]), unit or "s", "s", name=row.where)[0]), kind
         if time > self.clock() + AHEAD:
             raise DataError(f"{row.where}: its time, {stamp(time, kind)}, has not come yet; the row is left out")
         return time, kind
@@ -182,7 +188,7 @@ class Watch:
 
 def stamp(time: float, kind: str) -> str | float:
     """A time as events have it."""
-    return time if kind == NUMBERS else f"{datetime.fromtimestamp(time, UTC):%Y-%m-%dT%H:%M:%SZ}"
+    return time if kind in (NUMBERS, BARE) else f"{datetime.fromtimestamp(time, UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def identity(request: Request) -> str:
