@@ -66,6 +66,18 @@ def test_a_window_is_answered_with_all_that_has_come(sensors: tuple[Sensor, ...]
     assert as_text(found[2]) == "2016-03-01T02:20:00Z one: ALARM: no cause stands out"
 
 
+def test_what_is_no_whole_window_at_the_end_waits(sensors: tuple[Sensor, ...]) -> None:
+    for samples, windows in ((2 * EVERY, 2), (2 * EVERY - 1, 1), (EVERY - 1, 0)):
+        store, lines = Store(None, ""), "\n".join((HEAD, *map(line, range(samples))))
+        watch = Watch(sensors, Card(), store, answer, EVERY, lambda: 1.5e9)
+        for _ in watch.follow(Stream(io.BytesIO(lines.encode()), "one")):
+            pass
+        assert [e["event"] for e in said(store)] == ["window"] * windows
+        left = samples - EVERY * windows
+        assert [(e["machine"], e["samples"]) for e in watch.waiting()] == [("one", left)] * bool(left)
+        assert all(f"one: waiting: the last {left} samples" in as_text(e) for e in watch.waiting())
+
+
 def test_a_german_stream_says_the_same(sensors: tuple[Sensor, ...]) -> None:
     lines, store = [*map(line, range(16))], Store(None, "")
     german = "\n".join((HEAD, *lines)).replace(",", ";").replace(".", ",").encode()
@@ -203,8 +215,9 @@ def test_a_file_of_events_has_each_once(tmp_path: Path, capsys: pytest.CaptureFi
     with opened(str(path)) as lines:
         assert lines.last == 3
         lines.write({"number": 4, "event": "cleared", "machine": "one", "to": "today"})
+        lines.write({"event": "waiting", "machine": "one", "text": "2 samples"})
     assert [json.loads(text)["number"] for text in path.read_text().splitlines()] == [3, 4]
-    assert capsys.readouterr().out == "today one: alarm over\n"
+    assert capsys.readouterr().out == "today one: alarm over\none: waiting: 2 samples\n"
 
 
 def test_a_fleet_on_the_workers_of_a_cluster(gearheat, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
@@ -220,7 +233,8 @@ def test_a_fleet_on_the_workers_of_a_cluster(gearheat, tmp_path: Path, monkeypat
         assert answer.code == 2 and 'pip install "gearheat[dask]"' in answer.err
     distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install gearheat[dask]")
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "worker_dashboard_address": None}
-    assert gearheat(*command[:-1], "--json", tmp_path / "here.jsonl").code == 0
+    answer = gearheat(*command[:-1], "--json", tmp_path / "here.jsonl")
+    assert answer.code == 0 and answer.out.count("waiting: the last 3 samples") == 2
     with distributed.LocalCluster(**options) as there:
         answer = gearheat(*command, there.scheduler_address, "--json", tmp_path / "there.jsonl")
     assert answer.code == 0, answer.err

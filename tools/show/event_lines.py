@@ -28,9 +28,9 @@ class Lines:
     last: int | None = None
 
     def write(self, event: Mapping[str, Any]) -> None:
-        """Append an event."""
+        """Append an event; one without a number does not go into the file."""
         text = codec.dumps(event, ensure_ascii=False)
-        if self.file is not None:
+        if self.file is not None and "number" in event:
             self.file.write(f"{text}\n")
             self.file.flush()
         print(visible(as_text(event)) if self.people else text, flush=True)
@@ -66,8 +66,8 @@ def _mended(path: Path) -> int:
 
 def as_text(event: Mapping[str, Any]) -> str:
     """One line for people."""
-    if event["event"] == "warning":
-        return f"{event['machine']}: warning: {event['text']}"
+    if event["event"] in ("warning", "waiting"):
+        return f"{event['machine']}: {event['event']}: {event['text']}"
     head = f"{event['to']} {event['machine']}"
     named = ", ".join(describe(c) for c in event.get("causes", ())) or "no cause stands out"
     if event["event"] == "alarm":

@@ -67,7 +67,8 @@ def watch(
         scheduler: address of a Dask scheduler whose workers diagnose the windows of a fleet
 
     Returns:
-        its events in order: "window", "alarm", "cleared", "warning"
+        its events in order: "window", "alarm", "cleared", "warning"; where the source ends, and without a number,
+        "waiting" of samples that are no whole window
 
     Raises:
         GearheatError: all problems of files and options at once
@@ -128,3 +129,4 @@ def _events(
     store.commit()
     if not any(m.count or math.isfinite(m.answered) for m in store.machines.values()):
         raise DataError("no sample came that can be used. Check the source, and the columns of its card.")
+    yield from own.waiting()

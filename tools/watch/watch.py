@@ -86,7 +86,7 @@ class Watch:
         Args:
             source: of the samples
         """
-        yield from self._answer()
+        yield from self._answer(self.every + 1)
         heard = self.clock()
         for row in source.rows():
             if row is not None:
@@ -100,11 +100,21 @@ class Watch:
             if row is None or any(m.count > self.every for m in self.store.machines.values()):
                 self.store.commit()
                 source.kept()
-                yield from self._answer()
+                yield from self._answer(self.every + 1)
                 yield
         self.store.commit()
         source.kept()
+        yield from self._answer(self.every)  # no sample can come that belongs to a window before
         yield
+
+    def waiting(self) -> Iterator[dict[str, Any]]:
+        """What no window has yet, by machine: events without a number, as nothing has happened."""
+        for m in (m for m in self.store.machines.values() if m.count):
+            text = (
+                f"the last {m.count} samples are fewer than a window has, {self.every}, and not diagnosed."
+                " --state keeps them for the next run; --every sets the window"
+            )
+            yield {"event": "waiting", "machine": m.name, "samples": m.count, "every": self.every, "text": text}
 
     def _take(self, row: Row) -> None:
         """Add a row to what there is."""
@@ -157,9 +167,9 @@ class Watch:
             raise DataError(f"{row.where}: its time, {stamp(time, kind)}, has not come yet; the row is left out")
         return time, kind
 
-    def _answer(self) -> Iterator[None]:
-        """Answer all windows that are full, one of each machine after the other."""
-        while full := [m for m in self.store.machines.values() if m.count > self.every]:
+    def _answer(self, least: int) -> Iterator[None]:
+        """Answer windows while there are so many samples, one of each machine after the other."""
+        while full := [m for m in self.store.machines.values() if m.count >= least]:
             ends = [self.store.until(m, self.every) for m in full]
             asked = ((k, (m.name, m.kind, *self.store.rows(m, ends[k]))) for k, m in enumerate(full))
             for k, answer in self.spread(self.judge, asked):
