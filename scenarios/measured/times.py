@@ -14,7 +14,6 @@ import numpy as np
 from ...model.errors import DataError, Problems
 from ..csv_cells import fold
 from ..csv_table import in_si, split_unit
-from ..duty import LATEST, YEAR
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t", "zeit", "zeitstempel", "datum_uhrzeit")
@@ -28,14 +27,23 @@ _HOUR = re.compile(r"(?<=[ T])(?=\d:)")
 #: Numbers between these in steps below a half, whose unit nothing says, are dates as Excel keeps them: days since 1900.
 EXCEL_DAYS = (30000.0, 60000.0)
 EXCEL_ZERO = datetime(1899, 12, 30, tzinfo=UTC)
-#: A date as it is written in Germany.
-_DATE = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
+#: A date as it is written in Germany, and one with its month or its day first, which the numbers tell if one is a day.
+_DATE = re.compile(r"(\d\d?)\.(\d\d?)\.(\d{4})")
+_SLASHED = re.compile(r"(\d\d?)/(\d\d?)/(\d{4})")
+#: Months of a year.
+MONTHS = 12
+#: A time of a clock with twelve hours.
+_TWELVE = re.compile(r"\b(0?\d|1[0-2])(:\d\d(?::\d\d(?:\.\d+)?)?)\s*([ap])\.?m\.?$", re.IGNORECASE)
 #: What a column holds that is no calendar's, and those of which nothing says the unit.
 NUMBERS = "numbers"
 BARE = "numbers without a unit"
 #: A table of so many rows, taken at even steps of at most so long [s], is a log.
 LOGGED_ROWS = 50
 LOGGED_STEP = 900.0
+#: [s].
+YEAR = 3.156e7
+#: Latest time, since 1970 or since the begin of a table [s].
+LATEST = 250 * YEAR
 #: Share of the steps that are even, and how even they are.
 EVEN = 0.9
 
@@ -92,17 +100,57 @@ def join_days(cells: Mapping[str, Sequence[Any]], column: str) -> Sequence[Any]:
     return [f"{str(day).strip()} {str(time).strip()}" for day, time in zip(cells[days[0]], times, strict=True)]
 
 
-def parse_time(cell: Any) -> tuple[float, str]:
-    """A time as a number, and what it is. Raises TypeError, ValueError or OverflowError where it is none."""
+class TwoDaysError(ValueError):
+    """A date that may be two."""
+
+
+def parse_time(cell: Any, month_first: bool | None = None) -> tuple[float, str]:
+    """A time as a number, and what it is.
+
+    Args:
+        cell: as it is written
+        month_first: whether 1/2/2016 is in January; None where that is not known
+
+    Raises:
+        TypeError, ValueError, OverflowError: it is no time
+        TwoDaysError: it may be two, with both
+    """
     if not isinstance(cell, datetime) and _is_number(cell):
         if not math.isfinite(number := float(cell)):
             raise ValueError
         return number, NUMBERS
-    text = _HOUR.sub("0", _DATE.sub(r"\3-\2-\1", str(cell).strip()))
-    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(text)
+    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(_iso(str(cell).strip(), month_first))
     if stamp.tzinfo:
         return stamp.timestamp(), "times with a zone"
     return stamp.replace(tzinfo=UTC).timestamp(), "times without a zone"
+
+
+def _iso(text: str, month_first: bool | None) -> str:
+    """A time with its year first and 24 hours; any other text as it is."""
+    if match := _SLASHED.match(text) or _DATE.match(text):
+        day, month, year = map(int, match.groups())
+        if match.re is _SLASHED:
+            month_first = months_first([text]) if month_first is None else month_first
+            if month_first is None and day != month:
+                ways = f'"{year}-{day:02}-{month:02}" or "{year}-{month:02}-{day:02}"'
+                raise TwoDaysError(f"It may be {ways}: write one of these")
+            day, month = (month, day) if month_first else (day, month)
+        text = f"{year}-{month:02}-{day:02}{text[match.end() :]}"
+    if match := _TWELVE.search(text):
+        hour = int(match[1]) % 12 + 12 * (match[3] in "pP")
+        text = f"{text[: match.start()]}{hour:02}{match[2]}"
+    return _HOUR.sub("0", text)
+
+
+def months_first(cells: Iterable[Any]) -> bool | None:
+    """Whether dates such as 3/14/2016 have their month first, as one of them says; None where none does.
+
+    Args:
+        cells: times as they are written
+    """
+    found = (_SLASHED.match(cell.strip()) for cell in cells if isinstance(cell, str))
+    pairs = ((int(match[1]), int(match[2])) for match in found if match)
+    return next((second > MONTHS for first, second in pairs if max(first, second) > MONTHS), None)
 
 
 def _is_number(cell: Any) -> bool:
@@ -131,13 +179,14 @@ def seconds(
     found, kinds = np.full(len(cells), np.nan), Counter[str]()
     if isinstance(cells, np.ndarray) and np.isfinite(cells).all():
         found, kinds, cells = cells, Counter({NUMBERS: len(cells)}), ()
-    wrong = []
+    wrong, month_first = [], months_first(cells)
     for k, cell in enumerate(cells):
         try:
-            found[k], kind = parse_time(cell)
+            found[k], kind = parse_time(cell, month_first)
             kinds[kind] += 1
-        except (TypeError, ValueError, OverflowError):
-            wrong.append((lines[k], f'{column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'))
+        except (TypeError, ValueError, OverflowError) as error:
+            remedy = str(error) if isinstance(error, TwoDaysError) else "Write a time as 2016-03-14T06:00Z, or a number"
+            wrong.append((lines[k], f'{column} is "{cell}". {remedy}.'))
     problems += fold(name, wrong)
     if len(kinds) > 1:
         said = " and ".join(f"{count} {kind}" for kind, count in kinds.items())

@@ -110,6 +110,7 @@ def test_what_is_late_or_there_twice_counts_once(sensors: tuple[Sensor, ...]) ->
         (line(4, "warm"), 'T_sump_C is "warm", expected a number'),
         (line(3, 99), "T_sump_C at a time that is there with another value"),
         ("noon,1,2,3,4", 'its time is "noon"'),
+        ("3/1/2016 6:00 AM,1,2,3,4", 'It may be "2016-03-01" or "2016-01-03": write one of these; the row is left out'),
         ("2099" + line(4)[4:], "has not come yet"),
         ("12," + line(4).partition(",")[2], "has numbers without a unit, earlier samples times with a zone"),
         (line(4) + ",7", "has 6 cells, the header has 5"),

@@ -124,6 +124,17 @@ def test_times_without_a_unit_are_told(tmp_path: Path) -> None:
     assert not told("\n".join([HEAD.replace("time_utc", "t [min]"), *lines]), Card())
 
 
+def test_a_time_in_another_unit_is_told_and_does_not_end_the_watch() -> None:
+    lines = [f"{10 * k},{row.partition(',')[2]}" for k, row in enumerate(rows())]
+    (warning,) = told("\n".join([HEAD.replace("time_utc", "t [kg]"), *lines]), Card())
+    assert 'stdin t [kg]: unit \\"kg\\" does not fit s. Write one that does' in warning
+
+
+def test_american_times_are_read() -> None:
+    lines = [f"3/14/2016 {1 + k // 6}:{k % 6}0 PM,{row.partition(',')[2]}" for k, row in enumerate(rows())]
+    assert not told("\n".join([HEAD.replace("time_utc", "Time"), *lines]), Card())
+
+
 def test_two_columns_of_time_are_refused_once() -> None:
     (warning,) = told(text(HEAD.replace("time_utc", "time_utc,time_s"), time="{}T{}Z,0"), Card())
     assert "time_utc and time_s are columns of time. Keep one." in warning

@@ -17,7 +17,7 @@ from ...scenarios.given import scenario_of
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.logs import SINCE_1970, parse_number
 from ...scenarios.measured.table import Sensor
-from ...scenarios.measured.times import BARE, NUMBERS, join_days, parse_time, time_column
+from ...scenarios.measured.times import BARE, NUMBERS, TwoDaysError, join_days, parse_time, time_column
 from ...scenarios.write import rig_text
 from ..diagnose.request import Request
 from .sources import Row, Source
@@ -129,7 +129,7 @@ class Watch:
                 m = self.store.machines[row.machine] = Machine(row.machine, kind)
             if kind != m.kind:
                 raise DataError(f"{row.where}: has {kind}, earlier samples {m.kind}; the row is left out")
-        except DataError as error:
+        except GearheatError as error:
             self._warn(m or Machine(row.machine, ""), str(error))
             return
         cells: Cells = {}
@@ -150,19 +150,21 @@ class Watch:
 
     def _time(self, row: Row) -> tuple[float, str]:
         """Time [s] and kind of time of a row."""
-        column = time_column(row.cells, self._card.columns.get("time", ""), row.where.partition(" line ")[0])
-        cell = join_days({name: [cell] for name, cell in row.cells.items()}, column)[0]
+        name = row.where.partition(" line ")[0]
+        column = time_column(row.cells, self._card.columns.get("time", ""), name)
+        cell = join_days({head: [cell] for head, cell in row.cells.items()}, column)[0]
         try:
             time, kind = parse_time(cell)
-        except (TypeError, ValueError, OverflowError):
-            raise DataError(f'{row.where}: its time is "{cell}"; the row is left out') from None
+        except (TypeError, ValueError, OverflowError) as error:
+            more = f". {error}" if isinstance(error, TwoDaysError) else ""
+            raise DataError(f'{row.where}: its time is "{cell}"{more}; the row is left out') from None
         if kind == NUMBERS:
             unit = self._card.units.get(column, split_unit(column)[1])
             kind = NUMBERS if unit or time >= SINCE_1970 else BARE
             if kind == BARE and row.machine not in self.store.machines:
                 said = f"{row.where}: {column} has no unit and is taken for seconds. The card may name another: [units]"
                 self._warn(Machine(row.machine, ""), said)
-            return float(in_si(np.array([time]), unit or "s", "s", name=row.where)[0]), kind
+            return float(in_si(np.array([time]), unit or "s", "s", name=f"{name} {column}")[0]), kind
         if time > self.clock() + AHEAD:
             raise DataError(f"{row.where}: its time, {stamp(time, kind)}, has not come yet; the row is left out")
         return time, kind

@@ -3,6 +3,7 @@
 import gzip
 import re
 import warnings
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -290,3 +291,35 @@ def test_a_compressed_file_that_is_broken(tmp_path: Path) -> None:
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="no such file"):
         read_log(tmp_path / "none.csv", load("wind_turbine"), read_card(None))
+
+
+def stamped(tmp_path: Path, form: str, day: int) -> Log:
+    """A log whose times are in a form of `strftime`, from nine in the evening of a day of March on."""
+    stamps = [(datetime(2016, 3, day, 21) + timedelta(minutes=10 * k)).strftime(form) for k in range(N)]
+    rows = [f"{stamp},{row.partition(',')[2]}" for stamp, row in zip(stamps, lines(), strict=True)]
+    return read(tmp_path / "a.csv", rows, HEAD.replace("time_utc", "Date,Clock" if "," in form else "Time"))
+
+
+@pytest.mark.parametrize(
+    ("form", "day"),
+    [
+        ("%m/%d/%Y %I:%M %p", 14),
+        ("%m/%d/%Y %I:%M:%S %p", 12),  # the 13th tells of the 12th
+        ("%d/%m/%Y %H:%M", 14),
+        ("%-m/%-d/%Y %H:%M", 14),
+        ("%d.%m.%Y %I:%M %p", 2),
+        ("%Y-%m-%d %I:%M%p", 2),
+        ("%m/%d/%Y,%I:%M %p", 14),
+    ],
+)
+def test_dates_of_other_countries(tmp_path: Path, form: str, day: int) -> None:
+    log = stamped(tmp_path, form, day)
+    assert log.time[0] == datetime(2016, 3, day, 21, tzinfo=UTC).timestamp() and log.stretch.max() == 0
+
+
+def test_dates_that_may_be_two_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(DataError) as error:
+        stamped(tmp_path, "%m/%d/%Y %H:%M", 3)
+    first, *_ = error.value.problems
+    said = 'a.csv line 20: Time is "03/04/2016 00:00". It may be "2016-03-04" or "2016-04-03": write one of these.'
+    assert first == said  # the third of March is the third of March
