@@ -1,12 +1,19 @@
-"""Cells of tables: what stands for no reading, decimals with two readings, and many wrong cells told in few words."""
+"""Cells of tables: numbers, no reading, decimals with two readings, and many wrong cells told in few words."""
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
+from ..model.units import parse_number
+
 #: What programs write where nothing was read, in small letters.
 NOTHING = frozenset(("", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "-", "--", "---"))
+#: A number as a cell may have it.
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: Problems of one kind that are told one by one; the rest are counted.
 ALIKE = 3
 
@@ -79,3 +86,33 @@ def two_readings(name: str, rows: Iterable[tuple[int, Sequence[str]]], sure: set
                 " all decimals with the same one."
             )
     return None
+
+
+def numbers(cells: Sequence[str]) -> np.ndarray | None:
+    """The numbers of a column (n,), all at once; None where one of the cells holds no finite number."""
+    if not all(map(NUMBER.fullmatch, cells)):
+        return None
+    found = np.fromiter(map(float, cells), float, len(cells))
+    try:
+        for cell in {cells[int(k)] for k in np.flatnonzero(found == 0.0)}:
+            parse_number(cell)
+    except ValueError:  # one is too small to be held
+        return None
+    return found if np.isfinite(found).all() else None
+
+
+def number(cell: str) -> float:
+    """The finite number in a cell. Raises ValueError saying what is wrong with it."""
+    if not cell:
+        raise ValueError("is empty. Write a number")
+    if cell.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        raise ValueError("is not finite. Write a number or leave out the row")
+    if not NUMBER.fullmatch(cell):
+        raise ValueError("is no number. Write a number with a decimal point and no unit")
+    try:
+        value = parse_number(cell)
+    except ValueError:
+        raise ValueError("is too small to be held. Write 0, or check its exponent") from None
+    if not math.isfinite(value):
+        raise ValueError("is not finite. Write a number or leave out the row")
+    return value

@@ -19,8 +19,8 @@ import numpy as np
 
 from ..model.errors import DataError, Problems, ScenarioError, suggestion, visible
 from ..model.files import tables
-from ..model.units import kind_of, parse_number, spell_unit, to_si
-from .csv_cells import fold, is_nothing, ragged_rows, two_readings
+from ..model.units import kind_of, show_unit, spell_unit, to_si
+from .csv_cells import NUMBER, fold, is_nothing, number, ragged_rows, two_readings
 from .document import WIDE, read_text
 
 #: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
@@ -37,10 +37,11 @@ _TOLD = re.compile(r"\"?sep=(.?)", re.IGNORECASE)
 
 #: A number with a decimal comma, in a table whose columns no commas separate.
 _COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
 
+#: How a message advises a number with a unit; a column has the unit alone.
+_EXAMPLE = re.compile(r'Write (for example )?"[^"]*"\.$')
 _BRACKET = re.compile(r"(.*\S)\s*[\[(]\s*([^\])]+?)\s*[\])]")
 
 
@@ -101,7 +102,8 @@ def read_cells(
     Args:
         path: the file
         comments: whether lines that begin with # are left out as well
-        problems: take rows of other lengths than the header, which are then left out
+        problems: take columns that are there twice or have no name, and rows of other lengths than the header; they are
+            left out then
 
     Raises:
         DataError: no such file, not text, empty, no row under the header, or rows of other lengths
@@ -113,15 +115,19 @@ def read_cells(
     (_, header), *rows = lines
     wrong = header_problems(name, header)
     rows = [(line, cells) for line, cells in rows if cells != header]
-    if not wrong and rows:
-        header, rows, wrong = take_units(name, header, rows)
-    if not rows:
+    if rows:
+        header, rows, more = take_units(name, header, rows)
+        wrong += more
+    else:
         wrong.append(f"{name}: there is no row under the column names. Add at least one.")
-    ragged = ragged_rows(name, header, rows)
-    raise_all([*wrong, *ragged] if wrong or problems is None else [], name)
-    if problems is not None:
-        problems += ragged
-    return header, [(line, cells) for line, cells in rows if len(cells) == len(header)]
+    wrong += ragged_rows(name, header, rows)
+    if problems is None or not rows:
+        raise_all(wrong, name)
+    else:
+        problems += wrong
+    own = [k for k, h in enumerate(header) if h and header.index(h) == k]
+    whole = ((line, cells) for line, cells in rows if len(cells) == len(header))
+    return [header[k] for k in own], [(line, [cells[k] for k in own]) for line, cells in whole]
 
 
 def take_units(
@@ -138,7 +144,7 @@ def take_units(
     filled = [cell for cell in cells if not is_nothing(cell)]
     units = {cell: unit for cell in filled if (unit := _unit(cell))}
     least = max(2, len(filled) // 2 + 1)  # one alone may be a name: "P1" is a unit, too
-    if any(map(_NUMBER.fullmatch, cells)) or sum(c in units for c in cells) < least or len(cells) != len(header):
+    if any(map(NUMBER.fullmatch, cells)) or sum(c in units for c in cells) < least or len(cells) != len(header):
         return header, rows, []
     pairs = [(h, split_unit(h)[1], units.get(cell, "")) for h, cell in zip(header, cells, strict=True)]
     wrong = [
@@ -233,36 +239,6 @@ def plain(cells: Sequence[str], sign: str) -> list[str]:
     return stripped if sign == "," else [_COMMA.sub(r"\1.\2", cell) for cell in stripped]
 
 
-def numbers(cells: Sequence[str]) -> np.ndarray | None:
-    """The numbers of a column (n,), all at once; None where one of the cells holds no finite number."""
-    if not all(map(_NUMBER.fullmatch, cells)):
-        return None
-    found = np.fromiter(map(float, cells), float, len(cells))
-    try:
-        for cell in {cells[int(k)] for k in np.flatnonzero(found == 0.0)}:
-            parse_number(cell)
-    except ValueError:  # one is too small to be held
-        return None
-    return found if np.isfinite(found).all() else None
-
-
-def number(cell: str) -> float:
-    """The finite number in a cell. Raises ValueError saying what is wrong with it."""
-    if not cell:
-        raise ValueError("is empty. Write a number")
-    if cell.lower().lstrip("+-") in ("nan", "inf", "infinity"):
-        raise ValueError("is not finite. Write a number or leave out the row")
-    if not _NUMBER.fullmatch(cell):
-        raise ValueError("is no number. Write a number with a decimal point and no unit")
-    try:
-        value = parse_number(cell)
-    except ValueError:
-        raise ValueError("is too small to be held. Write 0, or check its exponent") from None
-    if not math.isfinite(value):
-        raise ValueError("is not finite. Write a number or leave out the row")
-    return value
-
-
 def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     """The table in a file and all that is wrong with its columns and cells; unknown columns only warn.
 
@@ -318,7 +294,7 @@ def _value(cell: str, column: Column) -> Any:
     if not column.required and is_nothing(cell):
         return math.nan
     wanted = "" if column.required else f". Write the {column.doc}, or give the column another name"
-    if column.kind == "count" and wanted and not _NUMBER.fullmatch(cell):
+    if column.kind == "count" and wanted and not NUMBER.fullmatch(cell):
         raise ValueError(f"is no whole number{wanted}")
     value = number(cell)
     if column.kind == "count":
@@ -358,13 +334,17 @@ def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
     Raises:
         ScenarioError: a unit of another kind, or none where there must be one
     """
+    usual = {"K": "degC", "N.m": "Nm"}.get(si, show_unit(si))
     if unit in ("", "1") and si != "1":
-        usual = {"K": "degC", "rad/s": "rpm", "N.m": "Nm"}.get(si, si)
         raise ScenarioError(
             f'{name}: its unit is not known. Write it behind the column\'s name, "[{usual}]", or in the'
             " card's table [units]."
         )
-    zero, one = (to_si(f"{value:g} {'' if unit == '1' else unit}".strip(), si, name=name) for value in (0.0, 1.0))
+    try:
+        zero, one = (to_si(f"{value:g} {'' if unit == '1' else unit}".strip(), si, name="") for value in (0.0, 1.0))
+    except ScenarioError as error:
+        said = str(error).removeprefix(f' = "0 {unit}": ')
+        raise ScenarioError(f"{name}: " + _EXAMPLE.sub(f'Write one that does, such as "[{usual}]".', said)) from None
     return one - zero, zero
 
 

@@ -1,7 +1,7 @@
 """Duty cycles: what is given from outside over time, as a CSV table.
 
 The header names the time and the inputs, each with its unit in brackets; between two rows everything runs in a
-straight line, and a time written twice is a jump:
+straight line, and a time written twice is a jump; times of a calendar count from the first one:
 
     time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]
     0,100,1500,25
@@ -23,17 +23,18 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, Problems, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
 from ..model.units import show_unit, to_si
-from .csv_table import number, numbers, raise_all, read_cells, read_header, split_unit
+from .csv_cells import number, numbers
+from .csv_table import is_of, raise_all, read_cells, read_header, split_unit
+from .measured.sensors import SI, WORDS
+from .measured.times import LATEST, YEAR, find_times, seconds
 from .ranges import check_range
 
 TIME = Quantity("time", "s", "time")
 
-#: [s].
-YEAR = 3.156e7
-#: Latest time, since 1970 or since the begin of a table [s].
-LATEST = 250 * YEAR
 #: Times nearer than this are one [s].
 APART = 1e-6
+#: Kinds of readings that a run gives.
+RESULTS = {"oil_temp", "wall_temp"}
 #: A step large enough to tell the slope of a unit's conversion from its offset without rounding.
 _LARGE = 1e6
 
@@ -55,10 +56,16 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
     """
     path = Path(path)
     known = {q.name: q for q in inputs.inputs} if isinstance(inputs, FlatModel) else inputs
-    header, rows = read_cells(path)
     problems = Problems()
+    header, rows = read_cells(path, problems=problems)
+    raise_all([] if rows else problems, path.name)
     values: dict[str, np.ndarray] = {}
     for i, cell in enumerate(header):
+        cells, lines = [cells[i] for _, cells in rows], [line for line, _ in rows]
+        if i == 0 and find_times([cell]) == [cell] and not split_unit(cell)[1] and numbers(cells) is None:
+            time, _ = seconds(cells, cell, path.name, np.array(lines), problems)
+            values[TIME.name] = time - time[0]
+            continue
         try:
             quantity, offset, slope = _column(cell, known if i else {TIME.name: TIME})
         except GearheatError as error:
@@ -66,8 +73,7 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
             continue
         if quantity.name in values:
             problems.append(f"{path.name} line 1: {quantity.name} is there twice. Keep one of its columns.")
-        cells = [cells[i] for _, cells in rows]
-        values[quantity.name] = _values(path.name, quantity, (offset, slope), cells, [k for k, _ in rows], problems)
+        values[quantity.name] = _values(path.name, quantity, (offset, slope), cells, lines, problems)
     if len(header) == 1:
         problems.append(f"{path.name} line 1: no input beside the time. Add a column, one of: {', '.join(known)}.")
     if TIME.name in values:
@@ -112,7 +118,7 @@ def _with_jumps(time: np.ndarray) -> np.ndarray:
 
 def _split_header(cell: str) -> tuple[str, str]:
     """Name and unit of a header cell."""
-    match = re.fullmatch(r"(.*?)\s*\[(.*)\]", cell)
+    match = re.fullmatch(r"(.*?)\s*[\[(](.*)[\])]", cell)
     return (match[1], match[2].strip()) if match else (cell, "")
 
 
@@ -124,11 +130,11 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
     name, unit = _split_header(cell)
     if TIME.name in known:
         name, unit = split_unit(cell)
-        if name.casefold() not in (TIME.name, "t"):
+        if not find_times([cell]):
             raise DataError(f'the first column is "{cell}". It must be the time with its unit, such as "time [min]".')
         name = TIME.name
     if name not in known:
-        close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
+        close = suggestion(name, known) or _meant(name, unit, known)
         if (other := other_torque(name)) in known:  # an FMU takes either, as it is exported
             close = f' It takes {other}. An FMU that takes {name} is exported with --set "{name}=... N.m".'
         raise DataError(f'there is no input "{name}".{close}')
@@ -141,8 +147,20 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         return quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE
     except ScenarioError as error:
         if "may mean" in str(error):
-            raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
+            ways = f'"{name} [Hz]" for revolutions per second, "{name} [rad/s]" for radians'
+            raise DataError(f'column "{cell}": its unit may mean revolutions or radians. Write {ways}.') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
+
+
+def _meant(name: str, unit: str, known: Mapping[str, Quantity]) -> str:
+    """Inputs that a name of the trade or a unit may mean, all where there is none: a user says which, and its sign."""
+    low = name.casefold()
+    kinds = [kind for kind, words in WORDS.items() if any(word in low for word in words)]
+    if RESULTS & {*kinds}:
+        return " Temperatures of oil and walls are results: leave the column out."
+    units = {SI[kind] for kind in kinds} or {q.unit for q in known.values() if unit and is_of(unit, q.unit)}
+    meant = [f'"{path} [{show_unit(q.unit)}]" ({q.doc})' for path, q in known.items() if q.unit in units]
+    return f" Write {' or '.join(meant)}." if meant else f" Inputs: {', '.join(known)}."
 
 
 def other_torque(path: str) -> str:
@@ -179,6 +197,6 @@ def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.nd
     ]
     if readable and not np.abs(time[readable]).max() <= LATEST:
         problems.append(f"{name}: the time goes beyond {LATEST / YEAR:g} years. Check its unit.")
-    if readable and np.ptp(time[readable]) == 0:
+    if len(readable) == len(time) and np.ptp(time) == 0:
         problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")
     return problems

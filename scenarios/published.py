@@ -38,7 +38,8 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ..model.errors import Problems, ScenarioError
-from .csv_table import number, read_cells
+from .csv_cells import number
+from .csv_table import read_cells
 from .document import paths, read_toml
 from .tables import Strict
 

@@ -10,15 +10,15 @@ from pathlib import Path
 from ...model.errors import DataError, Problems, suggestion
 from ...model.files import tables
 from ...model.parts.shaft import ShaftEnd
-from ..csv_table import is_of, numbers, read_cells, split_unit
+from ..csv_cells import numbers
+from ..csv_table import is_of, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card, CardSensor
 from .nominal import Nominal
-from .sensors import CONTEXT, SI, default_instruments, sensors_of
+from .sensors import CONTEXT, SI, WORDS, default_instruments, sensors_of
 from .table import Sensor
 
 _TABLES = tables("scenarios.measured", "sensors.toml")
-WORDS: Mapping[str, Sequence[str]] = _TABLES["words"]
 ENDS: Mapping[str, Sequence[str]] = _TABLES["ends"]
 OTHER: Mapping[str, Sequence[str]] = _TABLES["other"]
 #: Units of columns without one, by the SI unit of what they hold.

@@ -200,7 +200,7 @@ def read_columns(
     Args:
         path: CSV, CSV.gz or Parquet
         used: which columns of a header
-        problems: take rows of other lengths than the header, which are then left out
+        problems: take what is wrong with the header, and rows of other lengths, which are then left out
 
     Raises:
         DataError: it cannot be read, or its rows are not those of a table
@@ -211,8 +211,8 @@ def read_columns(
             return _parquet(path, used)
         text, sign = _open(path)
         with text as file:
-            header, rows = read_head(path.name, csv.reader(file, delimiter=sign))
-            kept, lines = used(header), list[np.ndarray]()
+            header, rows = read_head(path.name, csv.reader(file, delimiter=sign), problems)
+            kept, lines = used(list(dict.fromkeys(header))), list[np.ndarray]()
             parts: dict[str, list[Sequence[Any]]] = {h: [] for h in header if h in kept}
             while block := list(islice(rows, BLOCK)):
                 if sign != "," and not lines and (problem := two_readings(path.name, block)):
@@ -238,24 +238,31 @@ def read_columns(
     return {h: _join(part) for h, part in parts.items()}, np.concatenate(lines)
 
 
-def read_head(name: str, reader: Any) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+def read_head(
+    name: str, reader: Any, problems: list[str] | None = None
+) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """Header with the units of a row under it, and the line and cells of the other rows; one row is read ahead.
 
     Args:
         name: of the file
         reader: rows of cells, as that of `csv`
+        problems: take what is wrong with the header
 
     Raises:
-        DataError: what is wrong with the header
+        DataError: what is wrong with it, where nothing takes it
     """
     first: list[str] = next(reader, [])
     names: list[str] = next(reader, []) if tells_sign(first) else first
     header = [h.strip() for h in names]
-    raise_all(header_problems(name, header), name)
+    wrong = header_problems(name, header)
     rows = ((reader.line_num, row) for row in reader if any(row) and row != names)
     if ahead := list(islice(rows, 1)):
-        header, ahead, problems = take_units(name, header, ahead)
-        raise_all(problems, name)
+        header, ahead, more = take_units(name, header, ahead)
+        wrong += more
+    if problems is None:
+        raise_all(wrong, name)
+    else:
+        problems += wrong
     return header, chain(ahead, rows)
 
 

@@ -34,6 +34,8 @@ _TABLES = tables("scenarios.measured", "sensors.toml")
 CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str, float, float]] = _TABLES["context"]
 #: Columns that a log may have beside its sensors.
 LOGGED: Mapping[str, str] = _TABLES["logged"]
+#: Words of the trade in the names of columns, in small letters, by the kind of sensor.
+WORDS: Mapping[str, Sequence[str]] = _TABLES["words"]
 #: First words of rows in which programs sum up those above.
 SUMMARIES = frozenset(_TABLES["summaries"])
 #: Directions as tables write them.

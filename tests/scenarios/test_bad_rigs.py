@@ -194,7 +194,7 @@ FACE = 'b = "42 mm"'
         (
             'T_oil_C = "oil.T"',
             'T_oil_C = "carrier_bearing.P_loss"',
-            'rig.toml [sensors] T_oil_C: carrier_bearing.P_loss in degC = "0 degC": unit "degC" does not fit W.',
+            'rig.toml [sensors] T_oil_C: carrier_bearing.P_loss in degC: unit "degC" does not fit W.',
         ),
         (
             'V = "1 l"',

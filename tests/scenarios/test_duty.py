@@ -68,15 +68,34 @@ def test_the_inputs_of_a_rig_and_of_a_flat_model(tmp_path: Path) -> None:
         ),
         ("time [s],rom.T [degC]", 'there is no input "rom.T". Did you mean "room.T"?'),
         ("time [s],q [W]", 'there is no input "q". Inputs: carrier.w, carrier.tau, room.T.'),
+        ("time [s],Drehmoment", 'there is no input "Drehmoment". Write "carrier.tau [N.m]" (torque into the gearbox).'),
+        ("time [s],n [1/min]", 'there is no input "n". Write "carrier.w [rpm]" (angular velocity).'),
+        (
+            "time [s],T_oil (°C)",
+            'there is no input "T_oil". Temperatures of oil and walls are results: leave the column out.',
+        ),
+        (
+            "time [s],carrier.w (1/s)",
+            'column "carrier.w (1/s)": its unit may mean revolutions or radians. Write "carrier.w [Hz]" for revolutions'
+            ' per second, "carrier.w [rad/s]" for radians.',
+        ),
     ],
 )
 def test_a_wrong_header(tmp_path: Path, header: str, expected: str) -> None:
     assert problems(table(tmp_path, "0,20", "1,20", header=header)) == (f"duty.csv line 1: {expected}",)
 
 
-@pytest.mark.parametrize("name", ["Time [s]", "time (s)", "time_s", "t [s]", "t_s"])
+@pytest.mark.parametrize("name", ["Time [s]", "time (s)", "time_s", "t [s]", "t_s", "Zeit [s]"])
 def test_the_time_as_it_is_met(tmp_path: Path, name: str) -> None:
     assert read_duty(table(tmp_path, "0,20", "60,21", header=f"{name},room.T [degC]"), INPUTS).stop == 60
+
+
+@pytest.mark.parametrize(
+    "rows", [("2016-03-14T06:00", "2016-03-14 06:01"), ("3/14/2016 11:59 PM", "3/15/2016 12:00 AM")]
+)
+def test_times_of_a_calendar_count_from_the_first(tmp_path: Path, rows: tuple[str, str]) -> None:
+    written = table(tmp_path, *(f"{row},20" for row in rows), header="Zeit,room.T (°C)")
+    assert read_duty(written, INPUTS).time.tolist() == [0, 60]
 
 
 def test_no_input(tmp_path: Path) -> None:
@@ -93,6 +112,19 @@ def test_wrong_cells_are_all_named(tmp_path: Path) -> None:
         'duty.csv line 6: carrier.tau = "1_000" is no number. Write a number with a decimal point and no unit.',
         'duty.csv line 4: room.T = "-300" is out of range. It must be above 0 K.',
         "duty.csv line 4: time goes back (31.0 after 31.5). Sort the rows by time.",
+    )
+
+
+def test_header_and_cells_are_told_together(tmp_path: Path) -> None:
+    path = table(
+        tmp_path, "0,1,20,,2", "9,x,20,,2,7", "60,x,20,,2", header="time [s],carrier.w [rpm],a,,carrier.w [rpm]"
+    )
+    assert problems(path) == (
+        'duty.csv line 1: column "carrier.w [rpm]" is there twice. Keep one.',
+        "duty.csv line 1: column 4 has no name. Give it one.",
+        "duty.csv line 3: 6 cells under 5 column names. Write one cell per column, decimals with a point.",
+        'duty.csv line 4: carrier.w = "x" is no number. Write a number with a decimal point and no unit.',
+        'duty.csv line 1: there is no input "a". Inputs: carrier.w, carrier.tau, room.T.',
     )
 
 

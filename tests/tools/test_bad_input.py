@@ -96,7 +96,7 @@ def test_no_steady_state(gearheat, settings, words):
         (DUTY + "60,90,1500,25\n60,80,1500,25\n", ("line 5", "three times")),
         (DUTY.replace("carrier.w [rpm]", "carier.w [rpm]"), ("carrier.w",)),
         (DUTY.replace("[rpm]", "[kg]"), ("unit does not fit",)),
-        (DUTY.replace("[rpm]", "[1/s]"), ("may mean revolutions or radians", "[rpm]")),
+        (DUTY.replace("[rpm]", "[1/s]"), ("may mean revolutions or radians", "[Hz]", "[rad/s]")),
         (DUTY.replace("60,100,1500,25", "60,100,1500,-400"), ("line 3", "room.T")),
     ],
 )

@@ -82,6 +82,11 @@ def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
     assert first[1] == pytest.approx(first[0])
     assert gearheat("play", fmu, "--duty", duty, "-o", out, "--set", "oil.T=50 degC").code == 0
     assert [columns(out)[name][0] for name in ("oil.T [degC]", "wall.T [degC]")] == pytest.approx([50.0, 35.0])
+    duty.write_text("Zeit (min),carrier.w [rpm]\n0,100\n10,100\n")
+    for command, where in ((("simulate", "planetary"), "at the operating point"), (("play", fmu), "in the FMU")):
+        answer = gearheat(*command, "--duty", duty, "-o", out)
+        assert f"not in the duty, so constant as {where}: carrier.tau = 2500 N.m" in answer.out
+        assert "not in the duty" not in gearheat(*command, "--duty", duty, "-o", out, "--set", "carrier.tau=9 N.m").out
 
 
 def test_an_fmu_takes_a_torque_with_its_sign_where_it_is_exported_so(gearheat, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, li
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
-from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, over_the_duty
+from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, held_over, over_the_duty
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 
@@ -147,7 +148,7 @@ def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), t
             )
         note(f"{fmu}: running native code of {made_by}")
     with duty_file(duty) as path:
-        schedule = read_duty(path, about.quantities("input"))
+        schedule = read_duty(path, ports := about.quantities("input"))
         refuse_given(set, schedule.values, path.name)
         start = _start(about, assignments_of(set, lambda: about.quantities("start")))
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
@@ -164,7 +165,9 @@ def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), t
     shown = about.quantities("output")
     warm = {name: columns[name] for name, q in shown.items() if q.unit == "K"}
     lost = [columns[n] for n in shown if n.endswith(".P_loss") and f"{n.removesuffix('P_loss')}eta" in shown]
-    said = over_the_duty(played.time, warm, lost[0] if lost else None) if made_here else []
+    held = [replace(q, start=float(about.variables[n].start or 0.0)) for n, q in ports.items() if n not in first]
+    told = [*held_over(held, "in the FMU"), *over_the_duty(played.time, warm, lost[0] if lost else None)]
+    said = told if made_here else []
     return TimeSeries(f"{fmu.stem}, {path.stem}", played.time, columns, units, (before, behind), said)
 
 

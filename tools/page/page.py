@@ -20,7 +20,8 @@ from ...model.core.connect import nets
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, Problems, ScenarioError, suggestion
 from ...model.units import show_unit, to_si
-from ...scenarios.csv_table import in_si, numbers, read_cells, scale, split_unit
+from ...scenarios.csv_cells import numbers
+from ...scenarios.csv_table import in_si, read_cells, scale, split_unit
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..describe.description import show

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -238,7 +238,9 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None)
     name = f"{scenario.name}, {path.stem}"
     last = replace(result, columns={key: column[-1:] for key, column in result.columns.items()})
     end = SteadyState(scenario, flat, last, backward=False)
+    given = {*schedule.values, *(text.partition("=")[0].strip() for text in assignments)}
     said = [
+        *held_over((q for q in flat.inputs if q.name not in given), "at the operating point"),
         *over_the_duty(result.index, warm, whole),
         *(["at the end: " + ", ".join(end.flows)] if end.flows else []),
         *end.headlines,
@@ -259,6 +261,17 @@ def far_in(name: str, schedule: Schedule, usual: Mapping[str, float], where: str
     units = {path: "rad/s" if path.endswith(".w") else "N.m" for path in rows if path.endswith((".w", ".tau", ".load"))}
     found = far_from(usual, {path: float(schedule.values[path][rows[path]]) for path in units}, units, where)
     return [f"{name}, row {rows[path] + 1}: {words}" for path, words in found.items()]
+
+
+def held_over(inputs: Iterable[Quantity], where: str) -> list[str]:
+    """Speeds and torques that a duty does not give, in words.
+
+    Args:
+        inputs: that neither the duty nor the user gives, with their values
+        where: these are from, "in the FMU"
+    """
+    held = [f"{q.name} = {text(q.start, q.unit)}" for q in inputs if q.unit in ("rad/s", "N.m")]
+    return [f"not in the duty, so constant as {where}: {', '.join(held)}"] if held else []
 
 
 def over_the_duty(time: np.ndarray, warm: Mapping[str, np.ndarray], loss: np.ndarray | None) -> list[str]:

@@ -20,8 +20,9 @@ from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate
 from ...model.run.steady import steady
 from ...model.units import to_si
-from ...scenarios.duty import LATEST, YEAR, duty_names, read_duty
+from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, scenario_of
+from ...scenarios.measured.times import LATEST, YEAR
 from ...scenarios.scenario import Scenario
 from . import sampling
 from .sampling import UNCERTAINTY, draw_values, reasons, shares

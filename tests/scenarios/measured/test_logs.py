@@ -323,3 +323,13 @@ def test_dates_that_may_be_two_are_refused(tmp_path: Path) -> None:
     first, *_ = error.value.problems
     said = 'a.csv line 20: Time is "03/04/2016 00:00". It may be "2016-03-04" or "2016-04-03": write one of these.'
     assert first == said  # the third of March is the third of March
+
+
+def test_header_and_cells_are_told_together(tmp_path: Path) -> None:
+    rows = [f"{row},1" for row in lines()]
+    with pytest.raises(DataError) as error:
+        read(tmp_path / "a.csv", [rows[0].replace("1500", "fast"), *rows[1:]], f"{HEAD},T_sump_C")
+    assert error.value.problems == (
+        'a.csv line 1: column "T_sump_C" is there twice. Keep one.',
+        'a.csv line 2: n_hss_rpm is "fast", expected a number or nothing.',
+    )
