@@ -247,7 +247,7 @@ def plan(
 
     Example:
         >>> import gearheat as gh
-        >>> gh.plan("planetary", separate=["losses.churning", "losses.seals"])  # doctest: +SKIP
+        >>> gh.plan("planetary", separate=["losses.churning", "losses.seal_drag"])  # doctest: +SKIP
     """
     request = PlanRequest(
         rig, tuple(listed(separate)), path_or_none(card), path_or_none(points), paths_of(library), reference

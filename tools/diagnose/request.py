@@ -147,10 +147,7 @@ class PlanRequest:
         """What is wrong with the options."""
         names = self.causes
         twice = [n for n in dict.fromkeys(names) if names.count(n) > 1]
-        found = [f"--separate: {name} is there twice. Name each cause once." for name in twice]
-        if len(set(names)) == 1:
-            found.append(f"--separate {names[0]}: there is nothing to tell it from. Name two causes or more.")
-        return found
+        return [f"--separate: {name} is there twice. Name each cause once." for name in twice]
 
 
 @dataclass(frozen=True)
@@ -170,12 +167,13 @@ def read_plan(request: PlanRequest, written: Mapping[str, Path | None], problems
     return PlanInputs(request, *reader.checked(), points)
 
 
-def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
-    """Problems of causes to tell apart that the library of a rig does not have."""
-    problems = []
+def unknown_causes(names: Collection[str], known: Collection[str]) -> list[str]:
+    """Problems of causes to tell apart that the library of a rig does not have, or of one alone."""
+    alone = f"--separate {', '.join(names)}: there is nothing to tell it from. Name two causes or more."
+    problems = [alone] if len(names) == 1 else []
     for name in (n for n in names if n not in known):
-        alike = [c for c in known if name in c.split(".")]
-        close = suggestion(name, known) or (f' Did you mean "{alike[0]}"?' if alike else "")
+        alike = " or ".join([f'"{c}"' for c in known if name[:4] in c][:3])
+        close = suggestion(name, known) or (f" Did you mean {alike}?" if alike else "")
         problems.append(f'--separate: there is no cause "{name}".{close or " Known: " + ", ".join(known) + "."}')
     return problems
 

@@ -116,7 +116,7 @@ def test_all_problems_at_once(tmp_path: Path) -> None:
     with pytest.raises(DataError) as caught:
         api.plan("nowhere", separate=(AIR, AIR), **files)
     told = "\n".join(caught.value.problems)
-    for word in ("picture.gif", "there twice", "nothing to tell it from", "no.toml", "nowhere", "o.json"):
+    for word in ("picture.gif", "there twice", "no.toml", "nowhere", "o.json"):
         assert word in told
 
 
@@ -127,3 +127,14 @@ def test_unknown_causes_are_met_with_what_was_meant() -> None:
     assert 'Did you mean "cooling.air"' in told[0]
     assert 'Did you mean "losses.churning"' in told[1]
     assert "Known: cooling.air" in told[2]
+
+
+def test_one_unknown_cause_is_told_with_those_that_are_like_it() -> None:
+    with pytest.raises(DataError) as caught:
+        api.plan("planetary", separate=["seals"])
+    assert caught.value.problems == (
+        "--separate seals: there is nothing to tell it from. Name two causes or more.",
+        '--separate: there is no cause "seals". Did you mean "losses.seal_drag"?',
+    )
+    done = CliRunner().invoke(cli.app, ["plan", "planetary", "--separate", "nix"])
+    assert done.exit_code == 2 and 'there is no cause "nix". Known: losses.churning, ' in done.stderr
