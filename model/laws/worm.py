@@ -15,6 +15,12 @@ BASE = {
 }
 #: Square of the distance in X_L within which an oil is that of the print: 0.001, far below what oils differ by.
 BLUR = 1e-6
+#: What is said where the wheel would have to drive a worm that its friction holds.
+HELD = (
+    "self-locking, the wheel cannot drive: friction {mu} is {locking} times what a lead angle of {gamma} slides with,"
+    " the efficiency backward would be {eta_mesh}. Let the worm drive, or take more starts, a thinner worm or less"
+    " friction"
+)
 #: Centre distances between which worms were measured [m].
 SIZES = (0.065, 0.250)
 
@@ -156,6 +162,43 @@ def lead_angle(z_1: Num, m_x: Num, d_1: Num) -> Num:
         d_1: mean diameter of the worm [m]
     """
     return ca.atan(z_1 * m_x / d_1)
+
+
+@law(source="Mott2004", where="section 10-11, self-locking worms, with the pressure angle", verified=False)
+def worm_locking(mu: Num, alpha_n: Num, gamma: Num) -> Num:
+    r"""Friction of a worm mesh over that from which on the wheel cannot drive [1].
+
+    .. math:: \Lambda = \frac{\mu}{\cos\alpha_n \tan\gamma}
+
+    Args:
+        mu: friction coefficient [1]
+        alpha_n: normal pressure angle [rad]
+        gamma: lead angle [rad]
+    """
+    return mu / (ca.cos(alpha_n) * ca.tan(gamma))
+
+
+@law(
+    source="Mott2004",
+    where="quotient of equations 10-24 and 10-25",
+    ranges={"locking * drive": (-1.0, 1e3)},
+    regimes={"locking * drive": HELD},
+    verified=False,
+)
+def worm_efficiency(locking: Num, gamma: Num, drive: Num) -> Num:
+    r"""Efficiency of a worm mesh [1], below zero where the wheel drives a worm that its friction holds.
+
+    .. math:: \eta = \left(\frac{1 - \Lambda \tan^2\gamma}{1 + \Lambda}\right)_{q = 1}, \quad
+        \eta = \left(\frac{1 - \Lambda}{1 + \Lambda \tan^2\gamma}\right)_{q = -1}
+
+    Args:
+        locking: friction over that from which on the wheel cannot drive [1]
+        gamma: lead angle [rad]
+        drive: q, 1 where the worm drives the wheel, -1 where the wheel drives [1]
+    """
+    L_worm, L_wheel = locking * (1 + drive) / 2, locking * (1 - drive) / 2
+    tan_2 = ca.tan(gamma) ** 2
+    return (1 - L_worm * tan_2 - L_wheel) / (1 + L_worm + L_wheel * tan_2)
 
 
 @law(source="Mott2004", where="equations 10-24 and 10-25, their denominator", verified=False)

@@ -13,9 +13,11 @@ from ..laws.smooth import Num, friction_sign, smooth_abs, smooth_magnitude, smoo
 from ..laws.worm import (
     lead_angle,
     worm_base_friction,
+    worm_efficiency,
     worm_film_parameter,
     worm_friction,
     worm_geometry_factor,
+    worm_locking,
     worm_loss_torque,
     worm_mean_friction,
     worm_normal_force,
@@ -65,7 +67,9 @@ class WormPair(Component):
     mu = Output("1", "tooth friction coefficient", nominal=0.1)
     v_slide = Output("m/s", "sliding speed of the flanks")
     F_t = Output("N", "tangential force on the wheel, the axial one on the worm", nominal=1000.0)
+    gamma = Output("rad", "lead angle at the mean diameter of the worm", nominal=0.1)
     locking = Output("1", "friction over that from which on the wheel cannot drive")
+    eta_mesh = Output("1", "efficiency of the mesh, below zero where it locks")
 
     def sizes(self) -> Mapping[str, Num]:
         """Mean radius of the worm, pitch radius of the wheel."""
@@ -83,7 +87,10 @@ class WormPair(Component):
         yield equation("mesh power", self.P_loss, self.tau_loss * sign * w)
         yield equation("sliding speed", self.v_slide, smooth_magnitude(w) * self.d_1 / (2 * ca.cos(gamma)))
         yield equation("tooth friction", self.mu, self.k_mu * self.friction_number())
-        yield equation("locking", self.locking, self.mu / (ca.cos(self.alpha_n) * ca.tan(gamma)))
+        yield equation("lead angle", self.gamma, gamma)
+        yield equation("locking", self.locking, worm_locking(self.mu, self.alpha_n, gamma))
+        driven = ca.sign(w) * ca.sign(self.wheel.tau)
+        yield equation("mesh efficiency", self.eta_mesh, worm_efficiency(self.locking, gamma, driven))
         yield equation("force on the wheel", self.F_t, 2 * smooth_abs(self.wheel.tau, width) / (self.m_x * self.z_2))
         yield from self._exchange_forces(F_n, gamma, drive)
         yield equation("loss heats the gears", self.gears.Q_flow, -self.P_loss)

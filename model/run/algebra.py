@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Iterator
 
 import casadi as ca
@@ -12,6 +13,7 @@ from ..errors import SolveError
 from ..units import text
 from .fast import Fast, once
 from .newton import CONTRACTION, CONVERGED, Box, System, homotopy, newton
+from .result import outside
 
 #: Where an iteration starts, in nominals from the model's own guess, when it finds no way from there.
 GUESSES = (1.0, 10.0, 100.0, 1000.0)
@@ -28,6 +30,7 @@ class Algebra:
     """
 
     def __init__(self, flat: FlatModel) -> None:
+        self._flat = weakref.proxy(flat)
         self.quantities, self.blocks = flat.algebraic, flat.residual_names
         self.start = flat.starts("algebraic")
         nominal = np.array([q.nominal for q in flat.algebraic])
@@ -59,7 +62,7 @@ class Algebra:
         root = homotopy(self._from_guess(system), self.start, self.box)
         if root.found:
             return root.z
-        raise SolveError(self._problem(system, root.z))
+        raise SolveError(self._problem(system, root.z, (x, u, p)))
 
     def solve_rows(self, x: np.ndarray, u: np.ndarray, p: np.ndarray, warm: np.ndarray | None = None) -> np.ndarray:
         """The algebraic variables at many points, a column each: by full corrections of all, else point by point.
@@ -135,15 +138,18 @@ class Algebra:
         d[:, sound] = np.linalg.solve(matrices[sound], -residual.T[sound][..., None])[..., 0].T
         return d
 
-    def _problem(self, system: System, z: np.ndarray) -> str:
+    def _problem(self, system: System, z: np.ndarray, point: tuple[np.ndarray, ...]) -> str:
+        """Why there is no solution: what reigns where a law is left, else the equation that is farthest off."""
         residual, _ = system(z)
         worst = int(np.argmax(np.where(np.isfinite(residual), np.abs(residual), np.inf)))
-        q = self.quantities[worst]
+        q, (x, u, p) = self.quantities[worst], point
+        values = self._flat.function.call({"x": x, "z": z, "u": u, "p": p})
+        there = outside(self._flat, {name: np.array(value) for name, value in values.items()})
+        reasons = [f"{o.component}: {o.regime}." for o in there if o.regime]
         return (
             f'the equation "{self.blocks[worst]}" has no solution here '
             f"(last {q.name} {text(float(z[worst]), q.unit, 4)}).\n"
-            "Check speeds, torques, temperatures and parameters of that part."
-        )
+        ) + (" ".join(reasons) or "Check speeds, torques, temperatures and parameters of that part.")
 
 
 @once

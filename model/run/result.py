@@ -145,6 +145,32 @@ def words(flat: FlatModel, part: str, y: np.ndarray, digits: int = 6) -> dict[st
     return {q.name.rpartition(".")[2]: text(float(value), q.unit, digits) for q, value in of_part}
 
 
+def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outside, ...]:
+    """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
+
+    Args:
+        flat: the model
+        evaluated: what `evaluate` found
+    """
+    found: dict[tuple[str, str, str], Outside] = {}
+    for check, values in zip(flat.checks, evaluated["checked"], strict=True):
+        lowest, highest = float(np.min(values)), float(np.max(values))
+        slack = SLACK * max(abs(lowest), abs(highest))
+        if lowest >= check.low - slack and highest <= check.high + slack:
+            continue
+        key = (check.component, check.law.name, check.argument)
+        if (other := found.get(key)) is not None:
+            lowest, highest = min(lowest, other.lowest), max(highest, other.highest)
+        beyond = np.maximum(check.low - values, values - check.high)
+        last = max(int(np.nonzero(beyond > slack)[-1].max()), other.last if other else 0)
+        regime = check.law.regimes.get(check.argument, "")
+        if regime:
+            worst = int(np.argmax(beyond))
+            regime = regime.format(**words(flat, check.component, evaluated["y"][:, worst], digits=3))
+        found[key] = Outside(*key, check.low, check.high, lowest, highest, regime, last)
+    return tuple(found.values())
+
+
 def list_unsolved(implicit: Mapping[str, float]) -> Iterator[str]:
     """The implicit equations that do not hold, in words, by the largest scaled residual of each."""
     for name, residual in implicit.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..sources import LawInfo
 from .algebra import algebra
-from .result import SLACK, Audit, Outside, Result, imbalance, list_unsolved, out_of_range, words
+from .result import Audit, Result, imbalance, list_unsolved, out_of_range, outside
 
 
 def evaluate(
@@ -94,32 +94,6 @@ def result(
         laws=cite_laws(flat.laws),
         implicit=implicit,
     )
-
-
-def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outside, ...]:
-    """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
-
-    Args:
-        flat: the model
-        evaluated: what `evaluate` found
-    """
-    found: dict[tuple[str, str, str], Outside] = {}
-    for check, values in zip(flat.checks, evaluated["checked"], strict=True):
-        lowest, highest = float(np.min(values)), float(np.max(values))
-        slack = SLACK * max(abs(lowest), abs(highest))
-        if lowest >= check.low - slack and highest <= check.high + slack:
-            continue
-        key = (check.component, check.law.name, check.argument)
-        if (other := found.get(key)) is not None:
-            lowest, highest = min(lowest, other.lowest), max(highest, other.highest)
-        beyond = np.maximum(check.low - values, values - check.high)
-        last = max(int(np.nonzero(beyond > slack)[-1].max()), other.last if other else 0)
-        regime = check.law.regimes.get(check.argument, "")
-        if regime:
-            worst = int(np.argmax(beyond))
-            regime = regime.format(**words(flat, check.component, evaluated["y"][:, worst], digits=3))
-        found[key] = Outside(*key, check.low, check.high, lowest, highest, regime, last)
-    return tuple(found.values())
 
 
 def cite_laws(laws: Iterable[LawInfo]) -> tuple[str, ...]:

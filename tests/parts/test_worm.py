@@ -6,6 +6,7 @@ import pytest
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import SolveError
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.schedule import join_phases
@@ -16,11 +17,11 @@ STEEP = dict(z_1=4.0, z_2=41.0, m_x=4e-3, d_1=0.044, alpha_n=math.radians(20), k
 FLAT = STEEP | dict(z_1=1.0, d_1=0.06)
 
 
-def model(values: dict, rotor: bool = False, X_L: float = 1.0) -> FlatModel:
-    """A worm in warm oil; its speed is given, or with a rotor its torque."""
-    parts = [PARTS["WormPair"]("pair", **values), PARTS["ShaftEnd"]("b", given=("tau",))]
+def model(values: dict, rotor: bool = False, X_L: float = 1.0, wheel: str = "tau") -> FlatModel:
+    """A worm in warm oil; of its wheel torque or speed is given, of the worm the other, or with a rotor its torque."""
+    parts = [PARTS["WormPair"]("pair", **values), PARTS["ShaftEnd"]("b", given=(wheel,))]
     parts += [PARTS["OilBath"]("oil", V=1e-3, c_p=2000.0, T=333.15, **OIL | dict(X_L=X_L))]
-    parts += [PARTS["ShaftEnd"]("a", given=("tau",) if rotor else ("w",))]
+    parts += [PARTS["ShaftEnd"]("a", given=("tau",) if rotor or wheel == "w" else ("w",))]
     shaft = ["a.flange", "pair.worm"]
     if rotor:
         parts += [PARTS["Inertia"]("rotor", J=0.01)]
@@ -61,6 +62,7 @@ def test_a_wheel_drives_a_steep_worm_and_not_a_flat_one():
     assert steep["pair.locking"] < 1 < flat["pair.locking"]
     assert flat["b.P"] > 0  # the load helps,
     assert flat["a.P"] > 0  # and yet the worm has to be turned
+    assert flat["pair.eta_mesh"] == pytest.approx(efficiency(FLAT, flat["pair.mu"], -1), rel=1e-6)
 
 
 @pytest.mark.parametrize(("values", "held"), [(STEEP, False), (FLAT, True)], ids=["steep", "flat"])
@@ -89,3 +91,12 @@ def test_friction_of_din_3996_is_an_angle_beside_the_lead_angle_and_less_in_larg
     large = at_work(flat | dict(m_x=8e-3, d_1=0.12, b=0.1), w / 2, 1600.0)
     assert large["pair.mu"] == pytest.approx(found["pair.mu"] * math.sqrt(1 / 2), rel=1e-3)
     assert at_work(flat, w, 200.0, X_L=0.7)["pair.mu"] == pytest.approx(found["pair.mu"] * 0.02931 / 0.04243, rel=1e-3)
+
+
+def test_a_worm_that_locks_says_so_where_nothing_turns_it():
+    """A wheel that is to turn a worm against a torque: no torque does."""
+    flat = model(FLAT, wheel="w")
+    given = {"b.w": 0.1, "a.tau": 5.0}
+    u = [given.get(q.name, q.start) for q in flat.inputs]
+    with pytest.raises(SolveError, match=r"pair: self-locking, the wheel cannot drive: friction .* Let the worm drive"):
+        evaluate_at(flat, [q.start for q in flat.states], u, flat.starts("parameter"))

@@ -21,8 +21,8 @@ from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, SolveError
 from ...model.run.point import point
-from ...model.run.result import Outside
-from ...model.run.rows import evaluate, outside
+from ...model.run.result import Outside, outside
+from ...model.run.rows import evaluate
 from ...model.run.schedule import join_phases
 from ...scenarios.measured import readings
 from ...scenarios.measured.study import Measured
