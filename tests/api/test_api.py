@@ -160,6 +160,19 @@ def test_an_fmu_is_written_and_played(rig: gh.Rig, duty: Path, tmp_path: Path) -
     fmu = gh.export(rig, tmp_path / "planetary.fmu", platform="host").path
     played = gh.play(fmu, duty)
     assert played["oil.T"][-1] == pytest.approx(gh.simulate(rig, duty)["oil.T"][-1], abs=1e-3)
+    assert list(gh.play(fmu, duty, every="2 min").time) == [*np.arange(0, played.time[-1], 120), played.time[-1]]
+
+
+def test_a_year_of_an_fmu_has_fewer_rows_and_says_so(
+    rig: gh.Rig, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fmu = gh.export(rig, tmp_path / "planetary.fmu", platform="host").path
+    (year := tmp_path / "year.csv").write_text("time [h],room.T [degC]\n0,20\n8760,22\n")
+    assert len(gh.play(fmu, year, step="1 h")) == 8761
+    assert len(gh.play(fmu, year, step="10 min")) == 17521
+    assert "a row every 30 min" in capsys.readouterr().err
+    with pytest.raises(gh.GearheatError, match="above 0"):
+        gh.play(fmu, year, every=0)
 
 
 def test_a_part_of_ones_own_joins_a_rig(rig: gh.Rig) -> None:

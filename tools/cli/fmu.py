@@ -90,6 +90,7 @@ def play(
     step: str = "60 s",
     trust: bool = False,
     set_: list[str] | None = None,
+    every: str | None = None,
     plot: Path | None = None,
     json: str | None = None,
 ) -> None:
@@ -97,7 +98,7 @@ def play(
     fitting(out, "a table")
     console.writable(out)
     console.plottable(plot)
-    run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)
+    run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust, every=every)
     print_run(run, out, plot, json)
 
 

@@ -8,6 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
 from ...model.errors import FmuError, Problems, ScenarioError, suggestion
@@ -17,7 +19,7 @@ from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, li
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
-from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, held_over, over_the_duty
+from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, held_over, output_step, over_the_duty
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 
@@ -115,7 +117,9 @@ def _task(text: str) -> float:
     return step
 
 
-def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), trust: bool = False) -> TimeSeries:
+def play(
+    fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), trust: bool = False, every: Any = None
+) -> TimeSeries:
     """Play an FMU over a duty; one that was not made here only if it is trusted.
 
     Args:
@@ -124,6 +128,7 @@ def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), t
         step: communication step, such as "10 s", or a number [s]
         set: start values of parameters and states by name
         trust: run native code of an FMU that was not made here
+        every: time between two rows, such as "10 min"; a step if None, more where the duty has above 20,000 of them
 
     Raises:
         GearheatError: all that is wrong with FMU, duty or what is set; the run fails
@@ -155,7 +160,9 @@ def play(fmu: str | Path, duty: Duty, *, step: Any = 60.0, set: Settings = (), t
         start = _at_room(about, first) | start
     inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
     run = partial(play_fmu, about) if ours else partial(play_apart, fmu)
-    played = run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
+    between = output_step(schedule, every, dt)
+    times = None if between == dt else [*np.arange(schedule.start, schedule.stop, between), schedule.stop]
+    played = run(inputs, schedule.stop, dt, begin=schedule.start, start=start, output_times=times)
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     before = {"schema": "gearheat.play/1", "fmu": str(fmu), "out": None, "plot": None}

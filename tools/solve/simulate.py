@@ -291,18 +291,21 @@ def over_the_duty(time: np.ndarray, warm: Mapping[str, np.ndarray], loss: np.nda
     return [f"over the duty: {', '.join(said)}"] if said else []
 
 
-def output_step(schedule: Schedule, every: Any) -> float:
+def output_step(schedule: Schedule, every: Any, least: float = OUTPUT_STEP) -> float:
     """Time between two rows [s]: as asked, else the shortest usual one that does not give too many rows, told.
 
     Args:
         schedule: the duty
         every: text with a unit, number in SI, or None
+        least: the shortest one [s]
     """
     if every is not None:
-        return in_seconds(every, "--every")
+        if (asked := in_seconds(every, "--every")) <= 0:
+            raise ScenarioError(f"--every {asked:g} s: a time between rows is above 0.")
+        return asked
     length = schedule.stop - schedule.start
-    step = next((step for step in STEPS if length / step <= MOST), length / MOST)
-    if step > OUTPUT_STEP:
+    step = next((step for step in (least, *STEPS) if step >= least and length / step <= MOST), length / MOST)
+    if step > least:
         note(f"a row every {step / 60:g} min, as the duty lasts {length / 3600:.4g} h; --every says otherwise")
     return step
 
