@@ -85,7 +85,8 @@ def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, 
             ways.append("--bearings roller")
         yield (
             f"{T / 1000:.4g} kN.m at the slow shaft need {1000 * needed:.0f} mm, and the catalogue's bearings end at "
-            f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}."
+            f"{1000 * d:.0f} mm. Give {', '.join(ways[:-1])} or {ways[-1]}; or draw that and put your gears into the"
+            " file, with d, D, d_m and B of your bearings beside `bearing`: friction constants are those of a series."
         )
 
 
