@@ -138,6 +138,16 @@ def test_bearings_of_a_series_grow_together(prefix: str) -> None:
         assert after[3] > 0.9 * before[3], after
 
 
+@for_each([n for n in entries("bearings.toml") if n.startswith("NU 10")])
+def test_large_cylindrical_roller_bearings_are_rated_as_their_series(name: str) -> None:
+    """By ISO 281 C goes with L^(7/9) Z^(3/4) D_w^(29/27): here L as the width, D_w as the section, Z as d_m / D_w."""
+    one, other = (si(entries("bearings.toml")[n]) for n in (name, "NU 1060"))
+    expected = other["C"] * (one["B"] / other["B"]) ** (7 / 9)
+    expected *= ((one["D"] - one["d"]) / (other["D"] - other["d"])) ** (29 / 27 - 3 / 4)
+    expected *= ((one["D"] + one["d"]) / (other["D"] + other["d"])) ** (3 / 4)
+    assert one["C"] == pytest.approx(expected, rel=0.07 if one["d"] < 0.31 else 0.006)
+
+
 def test_bearings_of_a_series_share_their_constants() -> None:
     by_series: dict[str, set[tuple[float, ...]]] = {}
     for name, entry in entries("bearings.toml").items():

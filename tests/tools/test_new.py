@@ -706,6 +706,16 @@ def test_what_a_refusal_advises_works(gearheat, tmp_path, stages, ratio, power):
             assert gearheat("new", "a", *other, "--cooler", "-o", path).code == code, (option, factor)
 
 
+def test_carriers_of_a_wind_turbine_have_bearings_and_gears_before_planets_little_ratio():
+    """3 MW at 15 rpm: gearboxes of such turbines lose about 3 %, and a high-speed stage is about 600 mm wide."""
+    made = new("a", stages="planetary,planetary,helical", ratio=0.0103, power="3 MW", speed="15 rpm", cooler=True)
+    assert made.sizes["bearings"][-1]["a"].startswith("NU 10/")
+    assert 0.96 < made.sizes["efficiency"] < 0.98
+    assert 0.4 < made.sizes["stages"][-1]["a"] < 0.7
+    with pytest.raises(ScenarioError, match=r"at a shaft inside need 347 mm, and the catalogue's bearings for it end"):
+        new("a", stages="planetary,helical,helical", ratio=0.015, power="2 MW", speed="17 rpm", cooler=True)
+
+
 @pytest.mark.parametrize(
     ("stages", "ratio"),
     [

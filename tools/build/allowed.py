@@ -18,6 +18,8 @@ CENTRED = ("spur", "helical", "worm")
 #: Kinds of stages that stand last: a worm behind helical stages, planets behind any gears or other planets.
 LAST = "worm"
 IN_LINE = "planetary"
+#: Usual ratio of planetary stages, which gears before them leave to them [1].
+PLANETARY = 5.5
 
 
 def check(
@@ -52,7 +54,7 @@ def check(
     else:
         problems += _too_much(kinds[::order], ratio**order, order)
         if bearings in CHOICES and power > 0 and speed > 0:
-            problems += _too_strong(kinds, ratio, power, speed, bearings)
+            problems += _too_strong(kinds[::order], ratio, power, speed, bearings)
     if problems:
         raise ScenarioError(problems)
 
@@ -73,7 +75,7 @@ def _too_much(kinds: Sequence[str], ratio: float, order: int) -> Iterator[str]:
 
 def _too_strong(kinds: Sequence[str], ratio: float, power: float, speed: float, bearings: str) -> Iterator[str]:
     """A torque that asks for a larger bore than any bearing has."""
-    choices = HELD if [*kinds[-1:]] == [IN_LINE] else CHOICES
+    choices = HELD if [*kinds[-1:]] == [IN_LINE] else CHOICES  # kinds from the fast shaft on
     d, T = largest_bore(choices[bearings]), power / speed * max(ratio, 1.0)
     if (most := math.pi / 16 * SHEAR * d**3 / ROUNDED) < T:
         needed = (16 * T * ROUNDED / (math.pi * SHEAR)) ** (1 / 3)
@@ -158,5 +160,7 @@ def first_ratio(ratio: float, kinds: Sequence[str], shift: float = 1.0) -> float
         share = min(max(shift * ratio ** (1 / (stages + 1)), (ratio / most) ** (1 / (stages - 1))), ratio / least)
         return float(min(max(share, 1.0), MOST[kinds[0]]))
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
+    if kinds[0] != IN_LINE and (planets := kinds.count(IN_LINE)):  # they are smaller than gears for a torque
+        share = (ratio / PLANETARY**planets) ** (1 / (stages - planets))
     least, most = (ratio / math.prod(limit.get(k, 1.0) for k in kinds[1:]) for limit in (LEAST, MOST))
     return float(min(max(shift * share, most, LEAST.get(kinds[0], 1.0)), least, MOST[kinds[0]]))

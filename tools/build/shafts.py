@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
+from ...model.errors import ScenarioError
 from .bearings import CHOICES, HELD, LIFE, PRELOAD, THICK, UNLOADED, choose, largest_bore
 from .stages import BevelStage, PlanetaryStage, Stage, WormStage
 
@@ -99,6 +100,11 @@ def _shafts(stages: Sequence[Stage], k: int, bearings: str) -> list[Shaft]:
     gears = [(s.forces[1], s.x, s.r_2) for s in before if s in wheels]
     gears += [(s.forces[0], s.x, s.r_1) for s in behind if s in wheels]
     pairs = (CHOICES if gears else UNLOADED if behind else HELD)[bearings]
+    if d > (most := largest_bore(pairs)):
+        raise ScenarioError(
+            f"{T / 1000:.4g} kN.m at a shaft inside need {1000 * d:.0f} mm, and the catalogue's bearings for it end at"
+            f" {1000 * most:.0f} mm. Give another ratio or order of stages, or a lower power."
+        )
     bore = d if gears or behind else min(_carried(d), next(most for p in pairs if (most := largest_bore([p])) >= d))
     span = max(s.x + s.b / 2 for s in wheels) + side if gears else BARE * bore
     if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
