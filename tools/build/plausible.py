@@ -91,7 +91,7 @@ def notes(
         yield f"the input turns at {rpm:,} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
     if abs(off := made.ratio / made.asked - 1) > OFF:
         yield f"the ratio is {made.ratio:.4g}, {100 * off:+.1f} % from {made.asked:g}, as teeth are whole."
-    yield from _too_fast(made)
+    yield from _too_fast(made, around)
     if made.centre:
         yield from _loaded(made)
     if made.area > WIDE * made.drawn:
@@ -152,12 +152,13 @@ def _advise(made: Unit, kind: str, loss: float, losses: Mapping[str, float]) -> 
     return str(MACHINES["advice"][kind])
 
 
-def _too_fast(made: Unit) -> Iterator[str]:
+def _too_fast(made: Unit, around: Around) -> Iterator[str]:
     """What turns faster than a bath of oil, rolling bearings or lip seals can do."""
     if (v := max(stage.speed for stage in made.stages)) > DIPPING:
         yield (
-            f"what dips into the oil moves at {v:.0f} m/s, and gears dip up to about {DIPPING:g} m/s: faster ones have"
-            " oil sprayed on them, which is not drawn. Churning is less then."
+            f"what dips into the oil moves at {v:.0f} m/s, and gears dip up to about {DIPPING:g} m/s: faster ones run"
+            f" above the oil, which {'is' if around.cooler else '--cooler has'} sprayed on them. In the file a lower"
+            " oil.level, with less oil.V, takes them out of it, and GearWindage is the drag of air with a mist of oil."
         )
     n_d = max(60e3 * s.n * (s.d + max(s.outer)) / 2 for s in made.shafts)
     if n_d > N_D:
