@@ -183,7 +183,7 @@ SPURS = {"stages": "spur,spur", "ratio": 9, "power": "30 kW", "speed": "1450 rpm
     [
         (
             SERVO,
-            ("is below the usual 91 to 99 %.", "of another kind (--bearings ball), or an oil of a lower viscosity"),
+            ("is below the usual 91 to 99.3 %.", "of another kind (--bearings ball), or an oil of a lower viscosity"),
         ),
         (SERVO | {"bearings": "roller"}, ("(--bearings ball), or",)),
         (

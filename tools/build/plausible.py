@@ -99,7 +99,7 @@ def notes(
         yield f"--housing has {made.area:.3g} m2, {times}. Check its unit."
     height = sizing.height_of_axes(made)
     deepest = height - max(map(sizing.lowest, made.stages))
-    if (level := sizing.bath(made)["level"]) is not None and not deepest < level < height:
+    if made.volume and (level := sizing.bath(made)["level"]) is not None and not deepest < level < height:
         yield (
             f"the oil stands at {1000 * level:.0f} mm, expected {1000 * deepest:.0f} mm, where the largest wheel dips,"
             f" to {1000 * height:.0f} mm, where the axes are. Change --oil-volume."
