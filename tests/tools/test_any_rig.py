@@ -118,5 +118,6 @@ def test_card_command(gearheat, tmp_path):
     assert gearheat("card", RIG, "--json", "-").json["channels"]["T_oil"] == {
         "repeat_sd": "0.35 K",
         "offset_sd": "0.3 K",
+        "checked": False,
     }
     assert gearheat("card", "helicl").code == 2

@@ -266,9 +266,8 @@ def sided(at: Context, probes: Sequence[Sensor]) -> list[Mode]:
     """Errors on one side of a speed or a load that another instrument shows, or of what probes of one kind read."""
     shown = [(q, at.first(kind)) for q, kind in (("w", "speed"), ("tau", "torque"))]
     limits = [Regime(q, above, s) for q, s in shown if s and at.ranges.varies(s) for above in (True, False)]
-    low, high = (
-        f((b.get(s.name, 0.0) for s in probes), default=0.0) for f, b in ((min, at.ranges.low), (max, at.ranges.high))
-    )
+    low = min((at.ranges.low.get(s.name, 0.0) for s in probes), default=0.0)
+    high = max((at.ranges.high.get(s.name, 0.0) for s in probes), default=0.0)
     if high - low > LEAST_SPAN:
         limits += [Regime("T", above, span=(low, high)) for above in (True, False)]
 
