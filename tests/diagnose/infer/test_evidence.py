@@ -39,6 +39,20 @@ def test_evidence_of_one_size_is_the_integral_over_it(seed: int, low: float, hig
     assert log_bayes_factors(np.array([g @ e]), np.array([g @ g]), *bounds)[0] == pytest.approx(exact, abs=1e-5)
 
 
+@pytest.mark.parametrize("beyond", [3.0, 20.0, 60.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_evidence_of_a_size_at_either_bound_is_the_integral_up_to_it(sign: float, beyond: float) -> None:
+    g, e, t = np.array([10.0, 0.0]), np.array([sign * beyond, 0.0]), np.linspace(-10.0, 1.0, 200_001)
+    logs = -0.5 * (t / WIDTHS[:, None]) ** 2
+    misfit = beyond * 10 * t - 50 * t**2
+    exact = (np.logaddexp.reduce(logs + misfit, axis=1) - np.logaddexp.reduce(logs, axis=1)).tolist()
+    low, high = sorted((-10.0 * sign, sign))
+    bounds = np.array([low]), np.array([high]), WIDTHS[:, None]
+    exact_mean = np.logaddexp.reduce(exact) - np.log(len(exact))
+    assert log_bayes_factor(g[:, None], e, *bounds) == pytest.approx(exact_mean, abs=0.02)
+    assert log_bayes_factors(np.array([g @ e]), np.array([g @ g]), *bounds)[0] == pytest.approx(exact_mean, abs=0.02)
+
+
 def test_evidence_of_two_sizes_is_the_integral_over_both() -> None:
     rng = np.random.default_rng(5)
     e, G = rng.normal(size=6), rng.normal(size=(6, 2))

@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotri
-from scipy.special import ndtr
+from scipy.special import log_ndtr
 
 #: Widths of a size's prior, as multiples of its stated half width. The last one is for what dominates a campaign: a
 #: dead fan, a seal that seizes. Without it two causes share such an effect.
@@ -76,28 +76,28 @@ def log_bayes_factors(
         widths: standard deviations of the size's prior, all as likely (w, k)
     """
     logs, inside = by_width(s, q, low, high, widths)
-    return averaged(logs, inside, prior_mass(low, high, widths))
+    return averaged(logs + inside, prior_mass(low, high, widths))
 
 
 def by_width(
     s: np.ndarray | float, q: np.ndarray | float, low: np.ndarray, high: np.ndarray, widths: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The same at each width (w, ..., k): without bounds, and the share of the posterior that lies inside them."""
+    """The same at each width (w, ..., k): without bounds, and the log share of the posterior inside them."""
     v = widths.reshape(len(widths), *[1] * (np.ndim(s) - widths.ndim + 1), *widths.shape[1:]) ** 2
     post = v / (1 + v * q)
-    return 0.5 * s**2 * post - 0.5 * np.log1p(v * q), mass_inside(post * s, np.sqrt(post), low, high)
+    return 0.5 * s**2 * post - 0.5 * np.log1p(v * q), log_inside(post * s, np.sqrt(post), low, high)
 
 
 def prior_mass(low: np.ndarray, high: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """Share of the prior inside the bounds at each width (w, k)."""
-    return mass_inside(0.0, widths.reshape(len(widths), -1), low, high)
+    """Log share of the prior inside the bounds at each width (w, k)."""
+    return log_inside(0.0, widths.reshape(len(widths), -1), low, high)
 
 
-def averaged(logs: np.ndarray, inside: np.ndarray, prior: np.ndarray) -> np.ndarray:
-    """Log Bayes factors over all widths, of what `by_width` and `prior_mass` say."""
-    prior = prior.reshape(len(prior), *[1] * (logs.ndim - prior.ndim), -1)
-    whole = np.exp(logs - (most := logs.max(axis=0))) * np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)
-    return np.asarray(most + np.log(whole.mean(axis=0)))
+def averaged(logs: np.ndarray, prior: np.ndarray) -> np.ndarray:
+    """Log Bayes factors over all widths, of what `by_width` says together, and `prior_mass`."""
+    logs = logs - prior.reshape(len(prior), *[1] * (logs.ndim - prior.ndim), -1)
+    most = logs.max(axis=0)
+    return np.asarray(most + np.log(np.exp(logs - most).mean(axis=0)))
 
 
 def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray) -> float:
@@ -115,8 +115,7 @@ def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.nda
     C = np.linalg.inv(A + eye / D)
     mean, sd = C @ b, np.sqrt(np.diagonal(C, axis1=1, axis2=2))
     logs = 0.5 * mean @ b - 0.5 * np.linalg.slogdet(eye + A * D)[1]
-    inside, prior = mass_inside(mean, sd, low, high), mass_inside(np.zeros_like(each), each, low, high)
-    logs += np.log(np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)).sum(axis=1)
+    logs += (log_inside(mean, sd, low, high) - log_inside(0.0, each, low, high)).sum(axis=1)
     return float(np.logaddexp.reduce(logs) - np.log(len(logs)))
 
 
@@ -136,8 +135,10 @@ def split_error(
     return np.array([left + passing[np.ix_(held, kept)] @ known, left])
 
 
-def mass_inside(
+def log_inside(
     mean: np.ndarray | float, sd: np.ndarray | float, low: np.ndarray | float, high: np.ndarray | float
 ) -> np.ndarray:
-    """Share of a normal distribution inside bounds."""
-    return np.asarray(ndtr((high - mean) / sd) - ndtr((low - mean) / sd))
+    """Log share of a normal distribution inside bounds, however far beyond one of them it lies."""
+    a, b = (low - mean) / sd, (high - mean) / sd
+    beyond, below = log_ndtr(np.where(a > 0, -b, a)), log_ndtr(np.where(a > 0, -a, b))
+    return np.asarray(below + np.log1p(-np.exp(beyond - below)))

@@ -14,7 +14,7 @@ from itertools import count
 
 import numpy as np
 
-from .evidence import White, averaged, by_width, mass_inside, prior_mass
+from .evidence import White, averaged, by_width, prior_mass
 from .prior import SAME, kind
 from .terms import Linear, Scatter, TermSet
 
@@ -56,7 +56,7 @@ class Table:
         )
         #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
         self.scatters = []
-        #: Sizes of the same widths: their numbers, the widths, the prior's mass inside the bounds, and the most that
+        #: Sizes of the same widths: their numbers, the widths, the prior's log mass inside the bounds, and the most that
         #: bounds can add to a log Bayes factor.
         self.groups = []
         alike: dict[tuple[bool, int, tuple[float, ...]], list[int]] = {}
@@ -70,7 +70,7 @@ class Table:
             else:
                 k = np.array(numbers)
                 prior = prior_mass(self.low[k], self.high[k], tried)
-                self.groups.append((k, tried, prior, -np.log(prior.min(axis=0))))
+                self.groups.append((k, tried, prior, -prior.min(axis=0)))
 
     def named(self, members: Sequence[int]) -> list[str]:
         """The causes of a set, each once."""
@@ -144,7 +144,7 @@ class Whitened:
             able = 0.5 * s[own] ** 2 / q[own] + most > least[own]
             if len(k := own[able]):
                 each, inside = by_width(s[k], q[k], self.table.low[k], self.table.high[k], tried)
-                logs[k], at[k] = averaged(each, inside, prior[:, able]), tried[np.argmax(each, axis=0)]
+                logs[k], at[k] = averaged(each + inside, prior[:, able]), tried[np.argmax(each, axis=0)]
         return logs, at
 
     def scored(self, members: Sequence[int], widths: Sequence[float]) -> TermSet:
@@ -160,12 +160,12 @@ class Whitened:
                 s, q = float(c[i] - c[rest] @ tie), float(max(A[i, i] - A[i, rest] @ tie, 1e-12))
                 tried, low, high = table.linear.terms[k].widths, table.low[k], table.high[k]
                 logs, inside = by_width(s, q, low, high, tried)
-                inside = inside / mass_inside(0.0, tried, low, high)
-                logs = logs + np.log(np.maximum(inside, 1e-300))
+                inside = inside - prior_mass(low, high, tried)[:, 0]
+                logs = logs + inside
                 best = int(np.argmax(logs))
                 own[i] = tried[best]
                 mean = np.logaddexp.reduce(logs) - np.log(len(logs))
-                more[i] = float(mean - logs[best]) + np.log(max(inside[best], 1e-300))
+                more[i] = float(mean - logs[best]) + inside[best]
         _, _, log = self.beside(zip(members, own.tolist(), strict=True))
         beside = [k for k, _ in self.scatter.beside]
         whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])
