@@ -66,3 +66,16 @@ def test_rivals_are_exact_where_they_hold() -> None:
     X = np.random.default_rng(1).normal(size=(20, 3))
     left = gain.fitted(np.column_stack([np.ones(20), X]), 2.0 + X @ [1.0, -2.0, 0.5], kept, 1e-9)
     assert np.abs(left).max() < 1e-6
+
+
+def test_statistics_say_nothing_of_a_channel_with_a_single_reading(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    whole, folds = found.problem, schemes(found.problem.data.campaign)["leave-out-tests"]
+    others = np.flatnonzero(whole.data.kind == 0)[1:].tolist()
+    one = replace(found, problem=whole.without(frozenset(map(Aside, others))))
+    held = [np.setdiff1d(np.flatnonzero(np.isin(whole.data.row, rows)), others) for rows in folds]
+    sides = ("before", "after", "leading")
+    errors = [gain.Foreseen(own, {side: np.ones((2, len(own))) for side in sides}, ()) for own in held]
+    told = gain._gain(one, "leave-out-tests", folds, errors, 0, 0)
+    assert told is not None
+    assert (told.n, told.rivals) == (1, {})

@@ -81,8 +81,9 @@ def _gain(
         return None
     entries = np.setdiff1d(np.flatnonzero(o.kind == sensor), found.problem.entries_aside)
     rivals, s, rows = {}, o.read[sensor], o.row[entries]
-    for name, rival in RIVALS.items():
-        left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
+    ways = [kept for fold in folds if not (kept := ~np.isin(rows, fold)).all()]
+    for name, rival in RIVALS.items() if all(kept.any() for kept in ways) else ():
+        left = [rival(o, sensor, rows, kept) for kept in ways]
         known = [e for e in left if e is not None]
         if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
             rivals[name] = channels.difference(s, error)
