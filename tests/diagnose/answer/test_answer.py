@@ -295,6 +295,16 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
     assert all(r.separation_after > r.separation_before for r in best)
 
 
+@pytest.mark.parametrize("sd", [1.0, 0.3])
+def test_a_design_knows_the_rig_as_well_as_the_search(clean: tuple[Setting, Found], sd: float) -> None:
+    found, problem = clean[1], clean[1].problem
+    look = problem.look(found.null.look.z, (), np.full(problem.nz, sd))
+    null = replace(found.null, look=look, noise=problem.noise(look, found.null.noise.scales))
+    first = found.first.beside(null.linear(problem))
+    made, known = simulate_design(problem, look, null.noise, first, CAUSES, ()), Effects(first.candidates, first.white)
+    assert [made.seen().visible(c) for c in CAUSES] == pytest.approx([known.visible(c) for c in CAUSES])
+
+
 def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:
     setting, campaign = wrong[0], wrong[1].problem.data.campaign
     tried = list_experiments(campaign, setting.nominal.value)

@@ -137,7 +137,7 @@ def simulate_design(
     campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
     seen = [*look.seen, *(s for _, s, _ in runs.values())]
     joint = terms(campaigns, seen, problem.day_sd, look.sd, points=len(runs))
-    J = np.concatenate([look.jacobian, *(s.by[:, : problem.nz] for _, s, _ in runs.values())])
+    J = look.sd * np.concatenate([look.jacobian, *(s.by[:, : problem.nz] for _, s, _ in runs.values())])
     V = J @ J.T + noise.scaled(joint)
     known = {t.name: t.columns[:, 0] for t in joint if t.columns is not None and t.name.startswith("tolerance of ")}
     sensors = {s.name: s.offset_sd for s in problem.data.campaign.sensors}
