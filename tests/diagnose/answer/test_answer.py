@@ -11,8 +11,8 @@ import pytest
 from gearheat.model.errors import SolveError
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
-from gearheat.tools.diagnose.answer import estimate, gain
-from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, p_adequacy, temper
+from gearheat.tools.diagnose.answer import compose, estimate, gain
+from gearheat.tools.diagnose.answer.decide import POWER, Chance, decide, invisible, p_adequacy, temper
 from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
@@ -455,6 +455,20 @@ def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:
     assert group is not None, "what cannot be seen is like everything"
     assert group.causes[0] == TRUE
     assert UNEXPLAINED not in group.causes
+
+
+@pytest.mark.parametrize(("size", "alike"), [(-5.0, True), (-0.1, True), (5.0, False)])
+def test_what_is_like_a_cause_is_like_it_on_the_side_that_was_found(
+    clean: tuple[Setting, Found], size: float, alike: bool
+) -> None:
+    first = clean[1].first
+    own = [next(c for c in first.candidates if c.id == name) for name in (TRUE, "losses.churning")]
+    assert own[1].formula.limits[0] == 0.0, "a loss that only adds"
+    made = SimpleNamespace(first=SimpleNamespace(candidates=own, white=np.array([[9.0, -9.0]])))
+    best = SimpleNamespace(fit=SimpleNamespace(look=SimpleNamespace(acting=[SimpleNamespace(id=TRUE, t=[size])])))
+    decision = SimpleNamespace(answers=(), marginal={TRUE: Chance(1.0, 0.0)}, members={TRUE: [(best, 1.0)]})
+    told = compose.sets(clean[0].causes, made, decision)
+    assert [s.causes for s in told] == ([(TRUE, "losses.churning")] if alike else [])
 
 
 def test_calibration_goes_no_further_than_what_is_possible(clean: tuple[Setting, Found]) -> None:

@@ -107,13 +107,13 @@ def leading(decision: Decision) -> list[str]:
 
 
 def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.CauseSet, ...]:
-    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger."""
+    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger, to the side that was found."""
     effects, like = Effects(found.first.candidates, found.first.white), {c.id: c.like for c in library}
     told = []
     for cause in leading(decision)[:JUDGED]:
         best, _ = decision.members[cause][0]
-        sizes = [abs(a.t[0]) for a in best.fit.look.acting if a.id == cause]
-        told.append(find_alike(effects, cause, max([1.0, *sizes]), like))
+        size = next((float(a.t[0]) for a in best.fit.look.acting if a.id == cause), 1.0)
+        told.append(find_alike(effects, cause, float(np.copysign(max(abs(size), 1.0), size)), like))
     return tuple(s for s in told if s is not None)
 
 
