@@ -11,6 +11,7 @@ from gearheat.tools.diagnose.answer import gain
 from gearheat.tools.diagnose.answer.channels import levels
 from gearheat.tools.diagnose.answer.experiments import planned_campaign
 from gearheat.tools.diagnose.answer.gain import schemes
+from gearheat.tools.diagnose.answer.quality import group_rows
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.setting import Setting
@@ -19,7 +20,18 @@ from gearheat.tools.diagnose.setting import Setting
 def test_levels_are_where_the_gaps_are() -> None:
     values = np.array([100.1, 300.0, 99.8, 201.0, 299.5, 199.7])
     assert [rows.tolist() for rows in levels(values)] == [[0, 2], [3, 5], [1, 4]]
-    assert len(levels(np.full(4, 7.0))) == 1
+    assert len(levels(np.full(4, 7.0))) == len(levels(np.zeros(4))) == 1
+    assert [rows.tolist() for rows in levels(np.array([100.1, 95.0, 99.7, 94.8]))] == [[1, 3], [0, 2]]
+
+
+def test_a_speed_that_only_scatters_is_one(wrong: tuple[Setting, Found]) -> None:
+    campaign = wrong[1].problem.data.campaign
+    speed = next(s for s in campaign.given if s.kind == "speed")
+    held = 150.0 + speed.repeat_sd * np.random.default_rng(1).standard_normal(campaign.n)
+    still = replace(campaign, values=campaign.values | {speed.name: held})
+    assert "speed" in group_rows(campaign)
+    assert "speed" not in group_rows(still)
+    assert len(levels(held)) == 1
 
 
 def test_every_row_is_left_out_once(wrong: tuple[Setting, Found]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....scenarios.measured.checks import ONE_VALUE
 from ....scenarios.measured.table import Sensor
 from ..model.entries import Measured
 from .findings import Channel
@@ -76,7 +77,10 @@ def compared(o: Measured) -> list[tuple[int, Sensor, np.ndarray]]:
 
 
 def levels(values: np.ndarray, gap: float = GAP) -> list[np.ndarray]:
-    """Rows (k,) of each level, lowest first: values with no gap between them, as a share of their range."""
+    """Rows (k,) of each level, lowest first: values with no gap between them, as a share of their range.
+
+    What ranges over little of its size has but one, and its scatter no levels.
+    """
     order = np.argsort(values, kind="stable")
-    gaps = np.diff(values[order]) > gap * max(float(np.ptp(values)), 1e-12)
+    gaps = np.diff(values[order]) > gap * max(np.ptp(values), ONE_VALUE * np.abs(values).max())
     return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]
