@@ -107,8 +107,8 @@ def _repeat(campaign: Campaign, left: Mapping[str, np.ndarray], tests: Sequence[
 
 def _directions(values: np.ndarray, reverse: np.ndarray) -> tuple[float, float]:
     """Means in the forward and in the reverse direction of a test; the same where it has one."""
-    forward, back = (float(np.mean(values[way])) if way.any() else np.nan for way in (~reverse, reverse))
-    return forward, forward if np.isnan(back) and not reverse.any() else back
+    means = [float(np.mean(values[way])) for way in (~reverse, reverse) if way.any()]
+    return means[0], means[-1]
 
 
 def _centred(values: np.ndarray) -> np.ndarray:

@@ -133,6 +133,26 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
     assert set(told(*gross)) == {s.name for s in o.read} - {oil}, "what is set aside tells nothing"
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_points_repeated_in_one_direction_are_told_in_either(made: Made, way: float) -> None:
+    found = made.found
+    c, n = found.problem.data.campaign, 4
+    short = replace(
+        c, values={name: v[[0, 1, 0, 1]] for name, v in c.values.items()}, test=np.arange(n), order=np.arange(1.0, n + 1),
+        direction=np.full(n, way), dwell=c.dwell[:n], stop=np.zeros(n), oil=("A",) * n, mounting=("",) * n,
+        T_start=c.T_start[:n], room_start=c.room_start[:n], humidity=c.humidity[:n], date=("",) * n, lines=c.lines[:n],
+        points=c.points[:n],
+    )  # fmt: skip
+    o = found.problem.data.another(short)
+    problem = SimpleNamespace(data=o, measured=o.measured, own=slice(None), entries_aside=[])
+    null = SimpleNamespace(look=SimpleNamespace(shown=o.measured - o.row))
+    told = [p for p in list_repeats(SimpleNamespace(problem=problem, null=null)) if p.channel == "T_oil"]
+    assert [[r.sum for r in p.repeats] for p in told] == [[-1.0, 1.0]] * 2
+    assert all(r.difference is None for p in told for r in p.repeats)
+    one = o.campaign.sensor("T_oil").repeat_sd, next(s.repeat_sd for s in o.given if s.kind == "ambient")
+    assert [p.card for p in told] == pytest.approx([np.hypot(*one)] * 2, rel=1e-4)
+
+
 def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
     problem = copy(made.setting.problem)
     o, null = problem.data, made.found.null

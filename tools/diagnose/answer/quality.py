@@ -179,8 +179,9 @@ def list_repeats(found: Found) -> tuple[RepeatedPoint, ...]:
     left = problem.measured - found.null.look.shown
     left[problem.entries_aside] = np.nan
     rows = {s.name: o.over_rows(i, left[problem.own])[0] for i, s in enumerate(o.read)}
-    campaign, both = o.campaign, bool((o.campaign.direction < 0).any())
+    campaign = o.campaign
     for group in repeats.repeats(campaign, rows):
+        both = bool(np.ptp(campaign.direction[campaign.test == group.tests[0]]) > 0)
         for sensor in campaign.read:
             unit, name = channels.difference(sensor, 1.0), sensor.name
             sums, apart = unit * group.total[name], unit * group.difference[name] * (1.0 if both else np.nan)
