@@ -49,6 +49,18 @@ def test_a_probe_that_is_compared_shows_too_much(planetary):
     assert shown(planetary, cause, cause.forms[0], 2.0) == {"T_wall": pytest.approx(np.full(6, 2.0))}
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_an_error_above_a_load_follows_its_magnitude_whatever_sign_the_column_has(case, sign):
+    c = case("helical_two_stage")
+    cause = c.cause("sensor.oil_temp.offset")
+    mid, loads = c.ranges.mid["T_output"], np.array([0.65, 0.7, 0.8, 1.2, 1.3, 1.35])
+    here = row(c, T_output=sign * loads * mid)
+    theta = {cause.size.name: 2.0, "threshold": mid, "width": 1.0}
+    for words, moved in (("above a load", loads > 1), ("below a load", loads < 1)):
+        found = form_of(cause, words).shown(theta, here, here.sensors)["T_oil"]
+        assert as_array(found, 6) - here.sensors["T_oil"] == pytest.approx(2.0 * moved, abs=1e-2)
+
+
 def test_where_a_room_probe_reads_too_much_the_room_was_colder(planetary):
     cause = planetary.cause("sensor.ambient.bias")
     assert truth(planetary, cause, cause.forms[0], 2.0) == {"T_amb": pytest.approx(np.full(6, -2.0))}

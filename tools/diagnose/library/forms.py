@@ -128,10 +128,10 @@ class Regime:
         return self.share(theta, row, ranges)
 
     def beyond(self, value: Num, theta: Theta, ranges: Ranges) -> Num:
-        """Whether a value lies on its side of the threshold, 0 to 1."""
+        """Whether the magnitude of a value lies on its side of the threshold, 0 to 1."""
         low, high = self.bounds(ranges)
         side = 1.0 if self.above else -1.0
-        return step(side * (value - theta["threshold"]) / (USUAL * (high - low) * theta["width"]))
+        return step(side * (ca.fabs(value) - theta["threshold"]) / (USUAL * (high - low) * theta["width"]))
 
     def limits(self, theta: Theta, ranges: Ranges) -> dict[str, Num]:
         """Values of an extra part by key."""
