@@ -19,7 +19,7 @@ from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
 from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, gross_readings, scatters
 from gearheat.tools.diagnose.infer.found import Found
-from gearheat.tools.diagnose.infer.problem import Aside, Problem
+from gearheat.tools.diagnose.infer.problem import Acting, Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.report import extension, phrases
@@ -433,6 +433,20 @@ def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting
     for i, s in enumerate(o.read):
         said = gain.constant_cooling(o, i, rows, kept)
         assert (said is None) == (not s.kind.endswith("_temp"))
+
+
+def test_a_loss_that_is_all_gone_is_at_its_bound(
+    wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    setting, found = wrong
+    formula = next(f for f in setting.formulas if f.cause.id == "losses.seal_drag" and f.form.name == "")
+    one = Acting(formula, np.r_[formula.limits[0], np.zeros(formula.size - 1)])
+    assert formula.form.low > formula.cause.size.low, "no more than what is there"
+    monkeypatch.setattr(estimate, "_of_cause", lambda *of: (one.t, 0.01 * np.eye(formula.size)))
+    fit = SimpleNamespace(causes=(one.id,), look=SimpleNamespace(acting=(one,)))
+    told = estimate.estimate_cause(found, one.id, [(SimpleNamespace(fit=fit, form=lambda cause: ""), 1.0)])[0]
+    assert told.at_bound == "low"
+    assert told.value == told.ci95[0] == pytest.approx(formula.form.low)
 
 
 def test_a_place_in_the_running_order_is_a_test_with_its_date(clean: tuple[Setting, Found]) -> None:

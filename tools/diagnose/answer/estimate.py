@@ -66,7 +66,7 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     centre = float(w @ m)
     spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
     one = best.fit.look.acting[best.fit.causes.index(cause)]
-    s = one.formula.extent
+    s = replace(one.formula.extent, low=max(one.formula.extent.low, one.formula.form.low))
     ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
     return (_told(s, ends, one.formula.form.scale), *_shapes(found.problem, best.fit, one))
 
