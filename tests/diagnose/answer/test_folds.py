@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from gearheat.model.errors import SolveError
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.tools.diagnose.answer import gain
@@ -32,6 +35,24 @@ def test_a_speed_that_only_scatters_is_one(wrong: tuple[Setting, Found]) -> None
     assert "speed" in group_rows(campaign)
     assert "speed" not in group_rows(still)
     assert len(levels(held)) == 1
+
+
+def test_tests_of_one_running_order_stay_together(wrong: tuple[Setting, Found]) -> None:
+    campaign = wrong[1].problem.data.campaign
+    halves = replace(campaign, order=np.repeat([1.0, 2.0], campaign.n_tests // 2))
+    found = group_rows(halves)["running order"]
+    assert {name: len(rows) for name, rows in found.items()} == {"1 to 1": campaign.n // 2, "2 to 2": campaign.n // 2}
+
+
+def test_a_row_that_cannot_be_run_is_named_by_its_line(
+    wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    o = copy(wrong[1].problem.data)
+    o.campaign = replace(o.campaign, lines=o.campaign.lines[::-1])
+    run = o.at
+    monkeypatch.setattr(o, "at", lambda *at: replace(run(*at), shown=np.where(o.row == 3, np.nan, o.measured)))
+    with pytest.raises(SolveError, match=f" line {o.campaign.n - 2}: the rig cannot be run there"):
+        Problem([o], 0.01).look(np.zeros(len(o.nuisances) - 1))
 
 
 def test_every_row_is_left_out_once(wrong: tuple[Setting, Found]) -> None:

@@ -255,9 +255,9 @@ def group_rows(campaign: Campaign) -> dict[str, dict[str, np.ndarray]]:
     for quantity, kind in (("speed", "speed"), ("load", "torque")):
         sensor = next((s for s in (*campaign.given, *campaign.read) if s.kind == kind), None)
         groups[quantity] = {} if sensor is None else _along(campaign, sensor)
-    tests = np.array_split(np.argsort(campaign.order, kind="stable"), min(QUARTERS, campaign.n_tests))
-    orders = [(campaign.order[part].min(), campaign.order[part].max(), part) for part in tests]
-    groups["running order"] = {f"{a:g} to {b:g}": np.flatnonzero(np.isin(campaign.test, part)) for a, b, part in orders}
+    parts, order = np.unique(campaign.order), campaign.order[campaign.test]
+    quarters = np.array_split(parts, min(QUARTERS, len(parts)))
+    groups["running order"] = {f"{q[0]:g} to {q[-1]:g}": np.flatnonzero(np.isin(order, q)) for q in quarters}
     return {quantity: found for quantity, found in groups.items() if len(found) > 1}
 
 

@@ -246,9 +246,8 @@ class Problem:
             own = acting if o is self.data else ()
             found = o.at(whole, [(a.formula, a.t) for a in own])
             if (bad := o.row[~np.isfinite(found.shown)]).size:
-                raise SolveError(
-                    f"{o.campaign.name}: the rig cannot be run at row {bad[0] + 1}. Check row and rig file."
-                )
+                line = f"{o.campaign.name} line {o.campaign.lines[bad[0]]}"
+                raise SolveError(f"{line}: the rig cannot be run there. Check the line and the rig file.")
             part = slice(begin, begin + o.m)
             if laws.any():
                 bent[part] = (found.by[:, : self.nz] * laws.T[o.row]).sum(axis=1)
