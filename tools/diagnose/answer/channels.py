@@ -77,10 +77,7 @@ def compared(o: Measured) -> list[tuple[int, Sensor, np.ndarray]]:
 
 
 def levels(values: np.ndarray, gap: float = GAP) -> list[np.ndarray]:
-    """Rows (k,) of each level, lowest first: values with no gap between them, as a share of their range.
-
-    What ranges over little of its size has but one, and its scatter no levels.
-    """
+    """Rows (k,) of each level, lowest first: no gap is in one, as a share of the range, or of a tenth of the size."""
     order = np.argsort(values, kind="stable")
     gaps = np.diff(values[order]) > gap * max(np.ptp(values), ONE_VALUE * np.abs(values).max())
     return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]

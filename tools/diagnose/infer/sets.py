@@ -159,13 +159,10 @@ class Whitened:
                 tie = np.linalg.solve(A[np.ix_(rest, rest)] + np.diag(own[rest] ** -2), A[rest, i])
                 s, q = float(c[i] - c[rest] @ tie), float(max(A[i, i] - A[i, rest] @ tie, 1e-12))
                 tried, low, high = table.linear.terms[k].widths, table.low[k], table.high[k]
-                logs, inside = by_width(s, q, low, high, tried)
-                inside = inside - prior_mass(low, high, tried)[:, 0]
-                logs = logs + inside
+                free, inside = by_width(s, q, low, high, tried)
+                logs = free + inside - prior_mass(low, high, tried)[:, 0]
                 best = int(np.argmax(logs))
-                own[i] = tried[best]
-                mean = np.logaddexp.reduce(logs) - np.log(len(logs))
-                more[i] = float(mean - logs[best]) + inside[best]
+                own[i], more[i] = tried[best], np.logaddexp.reduce(logs) - np.log(len(logs)) - free[best]
         _, _, log = self.beside(zip(members, own.tolist(), strict=True))
         beside = [k for k, _ in self.scatter.beside]
         whole = self.log + log + float(more.sum()) + table.log_prior([*members, *beside])

@@ -112,16 +112,14 @@ def smooth_features(campaigns: Sequence[Measured], points: int) -> list[tuple[np
 
 def remainder(campaigns: Sequence[Measured], points: int) -> np.ndarray:
     """Effects (M, k) of what no parameter removes of a rig that is not the model, the same in all its campaigns."""
-    blocks = []
-    features = smooth_features(campaigns, points)
-    sensors = [s.name for s in campaigns[0].read]
-    for o, (linear, own) in zip(campaigns, features, strict=True):
+    blocks, first = [], campaigns[0]
+    for o, (linear, own) in zip(campaigns, smooth_features(campaigns, points), strict=True):
         fades = fading(o, linear) if any(c.campaign.series for c in campaigns) else np.zeros((o.m, 0))
-        columns = []
-        for name in sensors:
-            index = next((i for i, s in enumerate(o.read) if s.name == name), len(o.read))
-            kind, values = next((s.kind, o.campaign.values[name]) for o in campaigns for s in o.read if s.name == name)
-            sd = REMAINDER["temperature"] if kind.endswith("_temp") else REMAINDER["other"] * np.nanmean(np.abs(values))
+        columns, names = [], [s.name for s in o.read]
+        for s in first.read:
+            index = names.index(s.name) if s.name in names else len(names)
+            size = REMAINDER["other"] * np.nanmean(np.abs(first.campaign.values[s.name]))
+            sd = REMAINDER["temperature"] if s.kind.endswith("_temp") else size
             mine = (o.entries.sensor == index)[:, None]
             columns += [np.where(mine, sd * own[o.row], 0.0), np.where(mine, sd * fades, 0.0)]
         blocks.append(np.concatenate(columns, axis=1))
