@@ -77,7 +77,9 @@ def drawn(table: Table, width: int | None = None) -> str:
     screen = Console(file=out, width=min(width or WIDE, WIDE), markup=False, emoji=False, highlight=False)
     groups = fitting(least, whole, screen.width, repeated=True)
     for k, group in enumerate(groups):
-        made = Drawn(title=None if k else table.title, title_justify="left", box=box.SIMPLE_HEAD)
+        made = Drawn(box=box.SIMPLE_HEAD)
+        if not k and table.title:  # a title of rich would wrap at a narrow table's width
+            screen.print(table.title)
         for i in group:
             made.add_column(table.columns[i], overflow="fold", min_width=least[i], no_wrap=whole[i])
         for row in table.rows:
