@@ -435,9 +435,7 @@ def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting
         assert (said is None) == (not s.kind.endswith("_temp"))
 
 
-def test_a_loss_that_is_all_gone_is_at_its_bound(
-    wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_loss_that_is_all_gone_is_at_its_bound(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:
     setting, found = wrong
     formula = next(f for f in setting.formulas if f.cause.id == "losses.seal_drag" and f.form.name == "")
     one = Acting(formula, np.r_[formula.limits[0], np.zeros(formula.size - 1)])

@@ -107,7 +107,10 @@ def leading(decision: Decision) -> list[str]:
 
 
 def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.CauseSet, ...]:
-    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger, to the side that was found."""
+    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger.
+
+    A cause that was found below zero has other look-alikes than one above.
+    """
     effects, like = Effects(found.first.candidates, found.first.white), {c.id: c.like for c in library}
     told = []
     for cause in leading(decision)[:JUDGED]:

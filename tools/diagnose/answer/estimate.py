@@ -61,10 +61,9 @@ def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple
     best = max(acting, key=lambda member: member[1])[0]
     alike = [(h, p) for h, p in acting if h.form(cause) == best.form(cause)]
     sizes = [(x[0], covariance[0, 0]) for x, covariance in (_of_cause(found.problem, h.fit, cause) for h, _ in alike)]
-    weights = [p for _, p in alike]
-    w, (m, variances) = np.array(weights) / sum(weights), np.transpose(sizes)
-    centre = float(w @ m)
-    spread = float(np.sqrt(w @ (variances + (m - centre) ** 2)))
+    w, (m, variances) = [p for _, p in alike], np.transpose(sizes)
+    centre = float(np.average(m, weights=w))
+    spread = float(np.sqrt(np.average(variances + (m - centre) ** 2, weights=w)))
     one = best.fit.look.acting[best.fit.causes.index(cause)]
     s = replace(one.formula.extent, low=max(one.formula.extent.low, one.formula.form.low))
     ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]

@@ -83,9 +83,8 @@ def _gain(
     rivals, s, rows = {}, o.read[sensor], o.row[entries]
     ways = [kept for fold in folds if not (kept := ~np.isin(rows, fold)).all()]
     for name, rival in RIVALS.items() if all(kept.any() for kept in ways) else ():
-        left = [rival(o, sensor, rows, kept) for kept in ways]
-        known = [e for e in left if e is not None]
-        if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
+        left = [e for kept in ways if (e := rival(o, sensor, rows, kept)) is not None]
+        if len(left) == len(ways) and np.isfinite(error := rms(np.concatenate(left))):
             rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
     told = {side: [channels.difference(s, rms(line[mine])) for line in lines] for side, lines in errors_by.items()}

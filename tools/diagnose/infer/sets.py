@@ -56,8 +56,8 @@ class Table:
         )
         #: Scatters with as many columns and the same widths: their numbers, widths (w,), columns one after the other.
         self.scatters = []
-        #: Sizes of the same widths: their numbers, the widths, the prior's log mass inside the bounds, and the most that
-        #: bounds can add to a log Bayes factor.
+        #: Sizes of the same widths: their numbers, the widths, the prior's log mass inside the bounds, and the most
+        #: that bounds can add to a log Bayes factor.
         self.groups = []
         alike: dict[tuple[bool, int, tuple[float, ...]], list[int]] = {}
         for number, t in enumerate(linear.terms):

@@ -125,9 +125,8 @@ def remainders(problem: Problem) -> Iterator[Term]:
         root = vectors[:, kept] * np.sqrt(variance[kept])
         for group in places:
             mine = np.isin(o.entries.sensor, group)
-            own = (mine * o.entries.repeat)[:, None] * root
             columns = np.zeros((problem.m, root.shape[1]))
-            columns[problem.own] = own
+            columns[problem.own] = (mine * o.entries.repeat)[:, None] * root
             channels = tuple(o.read[i].name for i in group)
             columns = columns[:, (columns**2).sum(axis=0) > 0]
             passing = columns if name == BY_TEST else None
