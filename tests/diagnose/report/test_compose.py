@@ -139,9 +139,9 @@ def test_points_repeated_in_one_direction_are_told_in_either(made: Made, way: fl
     c, n = found.problem.data.campaign, 4
     short = replace(
         c, values={name: v[[0, 1, 0, 1]] for name, v in c.values.items()}, test=np.arange(n),
-        order=np.arange(1.0, n + 1), direction=np.full(n, way), dwell=c.dwell[:n], stop=np.zeros(n), oil=("A",) * n, mounting=("",) * n,
-        T_start=c.T_start[:n], room_start=c.room_start[:n], humidity=c.humidity[:n], date=("",) * n, lines=c.lines[:n],
-        points=c.points[:n],
+        order=np.arange(1.0, n + 1), direction=np.full(n, way), dwell=c.dwell[:n], stop=np.zeros(n), oil=("A",) * n,
+        mounting=("",) * n, T_start=c.T_start[:n], room_start=c.room_start[:n], humidity=c.humidity[:n],
+        date=("",) * n, lines=c.lines[:n], points=c.points[:n],
     )  # fmt: skip
     o = found.problem.data.another(short)
     problem = SimpleNamespace(data=o, measured=o.measured, own=slice(None), entries_aside=[])
