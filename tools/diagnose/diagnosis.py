@@ -100,10 +100,10 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         about=About(
             data=data.name,
             rig=made.scenario.name,
-            readings=data.n,
+            readings=int((data.lines > 0).sum()),  # else a row that a test lacks
             tests=data.n_tests,
             reference=reference.name if reference else "",
-            reference_readings=reference.n if reference else 0,
+            reference_readings=int((reference.lines > 0).sum()) if reference else 0,
             seed=request.seed,
         ),
         test=Alarm(

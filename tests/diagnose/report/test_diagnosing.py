@@ -59,6 +59,14 @@ def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert sorted(p.name for p in tmp_path.iterdir()) == ["o.html", "o.json", "o.toml", "p.csv"]
 
 
+def test_rows_that_a_test_lacks_are_no_readings() -> None:
+    case = Path(__file__).parents[2] / "challenge" / "practice_cases" / "rough_005"
+    found = api.diagnose(case / "data.csv", RIG, card=case / "card.json", reference=case / "reference.csv", quick=True)
+    rows = [len((case / name).read_text().splitlines()) - 1 for name in ("data.csv", "reference.csv")]
+    assert [found.about.readings, found.about.reference_readings] == rows == [26, 28]
+    assert any("rows are missing" in text for text in found.warnings)
+
+
 def test_linear_algebra_has_one_thread_while_it_runs() -> None:
     threads = []
 
