@@ -148,6 +148,15 @@ def test_a_frozen_probe_shows_the_same_from_one_test_on(planetary):
     assert wrong[4:] + planetary.ranges.mid["T_wall"] == pytest.approx(np.full(2, 333.0))
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_torque_that_hangs_keeps_its_sign(case, without, sign):
+    c, cause = case("drum_motor"), without("drum_motor", "order", "still: T_drum")["sensor.torque.frozen"]
+    here = row(c, T_drum=np.full(6, sign * c.ranges.mid["T_drum"]))
+    theta = {cause.size.name: 1.0, "threshold": 0.75, "held": 0.9 * c.ranges.mid["T_drum"]}
+    shares = as_array(cause.forms[0].shown(theta, here, here.sensors)["T_drum"], 6) / here.sensors["T_drum"]
+    assert shares == pytest.approx([1.0] * 4 + [0.9] * 2, abs=1e-6)
+
+
 def test_a_probe_drawn_to_the_room_loses_a_share_of_its_excess(planetary):
     c = planetary
     cause = c.cause("sensor.oil_temp.position")

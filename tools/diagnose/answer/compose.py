@@ -107,10 +107,7 @@ def leading(decision: Decision) -> list[str]:
 
 
 def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.CauseSet, ...]:
-    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger.
-
-    A cause that was found below zero has other look-alikes than one above.
-    """
+    """For each leading cause those the design cannot tell from it, at its usual size or as found, with its sign."""
     effects, like = Effects(found.first.candidates, found.first.white), {c.id: c.like for c in library}
     told = []
     for cause in leading(decision)[:JUDGED]:

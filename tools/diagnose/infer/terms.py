@@ -138,8 +138,7 @@ def gross(problem: Problem, look: Look) -> Iterator[Term]:
     for i in np.flatnonzero(problem.ends):
         column = np.zeros((problem.m, 1))
         column[i] = problem.repeat[i]
-        aside = Aside(int(i))
-        yield Term(f"reading {i}", f"reading {i}", float(np.log(GROSS)), column, ERRORS, aside=aside)
+        yield Term(f"reading {i}", f"reading {i}", float(np.log(GROSS)), column, ERRORS, aside=Aside(int(i)))
     for sensor, columns in problem.inputs(look):
         for k in np.flatnonzero((columns**2).sum(axis=0) > 0):
             aside, name = Aside(int(k), sensor), f"{sensor} {k}"

@@ -201,13 +201,16 @@ class _Instruments:
         return self.cause("gain", [mode], size, self.own[0].name)
 
     def frozen(self, read: Sequence[Sensor]) -> Cause:
-        """A reading that no longer moves."""
+        """A reading that no longer moves; what it keeps showing is a magnitude with its sign."""
         forms = []
         for s in read:
             low, high = (bound.get(s.name, 0.0) for bound in (self.at.ranges.low, self.at.ranges.high))
             held = Shape("held", self.kind.unit, "what it keeps showing", min(low, high - 1e-6), high)
-            form = wrong(s, "share", lambda theta, row, value: since(theta, row) * (theta["held"] - value))
-            forms.append(replace(one_of(form, s, read), shapes=(PLACE, held), regime=FROM_THEN))
+
+            def hung(theta: Theta, row: Row, value: Num, name: str = s.name) -> Num:
+                return since(theta, row) * (theta["held"] * (1 - 2 * (row.sensors[name] < 0)) - value)
+
+            forms.append(replace(one_of(wrong(s, "share", hung), s, read), shapes=(PLACE, held), regime=FROM_THEN))
         known = entry("sensor.*.frozen", self.at)
         doc = known.cause.doc.format(self.kind.words)
         return known.with_forms(forms, id=f"sensor.{self.name}.frozen", doc=doc)
