@@ -205,20 +205,15 @@ def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.nda
 
 
 def rank(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
-    """Experiments by what they add to the distances between all pairs of causes, weighted by how probable both are."""
-    before, found = made.distances(), []
-    for experiment in made.experiments:
-        after = made.distances(experiment.id)
+    """Experiments by what they add to distances of causes not yet told apart, weighted by how probable both are."""
+    before, found = {p: d for p, d in made.distances().items() if d < findings.APART}, []
+    for e in made.experiments:
+        after = made.distances(e.id)
         value = {p: weights[p[0]] * weights[p[1]] * gain(before[p], after[p]) for p in before}
         best = max(value, key=lambda p: value[p], default=None)
         if best is not None and value[best] > 0 and gain(before[best], after[best]) >= WORTH:
-            one = findings.Experiment(
-                id=experiment.id,
-                what=experiment.what,
-                separates=best,
-                separation_before=before[best],
-                separation_after=after[best],
-            )
+            distances = {"separation_before": before[best], "separation_after": after[best]}
+            one = findings.Experiment(id=e.id, what=e.what, separates=best, **distances)
             found.append((sum(value.values()), one))
     return [one for _, one in sorted(found, key=lambda item: (-item[0], item[1].id))]
 

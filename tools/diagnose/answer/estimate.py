@@ -171,8 +171,10 @@ def impacts(
     change = (fit.look.shown - problem.shown(fit.look, without))[problem.own]
     spans = zip(Vector(problem, fit.look).sizes, fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
-    covariance, jacobian = posterior(problem, fit)[np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
     run, told = np.isfinite(change), dict[str, findings.Impact]()  # without the cause the machine may run away
+    with_it, moves = fit.look.jacobian, np.isin(np.arange(len(fit.look.x)), own)
+    still = problem.look(fit.look.z, without, fit.look.sd, fit.look.laws).jacobian if run.all() else with_it
+    jacobian, covariance = (with_it - np.where(moves, 0.0, still))[problem.own], posterior(problem, fit)
 
     def add(name: str, weights: np.ndarray, unit: str, what: str) -> None:
         if share := np.abs(weights[run]).sum() / (np.abs(weights).sum() or 1.0):

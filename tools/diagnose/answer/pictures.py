@@ -66,12 +66,13 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     It is drawn against what the cause acts on; against the running order where this is none of the quantities.
     """
     problem, fit, o = found.problem, h.fit, found.problem.data
-    sd = np.sqrt(np.diag(fit.noise.covariance))[problem.own]
-    left = (problem.measured - fit.look.shown)[problem.own]
+    V, off, own, rest = fit.noise.covariance, problem.measured - fit.look.shown, problem.own, slice(o.m, None)
+    told = np.linalg.solve(V[rest, rest], V[rest, own]).T  # by a reference, of what the rig errs by in both
+    left, sd = off[own] - told @ off[rest], np.sqrt(np.diag(V[own, own] - told @ V[rest, own]))
     made = []
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
-        effect = (fit.look.shown - problem.shown(fit.look, others))[problem.own]
+        effect = (fit.look.shown - problem.shown(fit.look, others))[own]
         shares = (effect / sd) ** 2
         best, sensor, _ = max(channels.compared(o), key=lambda one: float(np.mean(shares[one[2]])))
         lines = o.over_rows(best, left + effect, left)

@@ -141,6 +141,7 @@ def gain(findings: Findings) -> list[Table]:
         (channel, with_unit(p.rms_calibrated, p.unit), with_unit(p.rms_extended, p.unit))
         for channel, p in findings.played.items()
     ]
+    note = "Rig files hold neither what days and tests differ by, nor what a reference tells of their own errors."
     return [
         Table(
             "Errors on readings left out",
@@ -150,7 +151,7 @@ def gain(findings: Findings) -> list[Table]:
             " what lasts, and by the mean of errors that do not. Interpolated: with what is another in each test or"
             " mounting as well, fillings, zeros that wander, which says nothing of a new campaign.",
         ),
-        Table("The rig played over these data, root mean square", ("channel", "calibrated", "extended"), played),
+        Table("The rig played over these data, root mean square", ("channel", "calibrated", "extended"), played, note),
     ]
 
 
@@ -172,10 +173,7 @@ def experiments(findings: Findings) -> list[Table]:
         for e in findings.next_experiment[:MOST]
     ]
     exposing = [(name_of(c.id), c.exposes) for c in list_causes(findings) if c.exposes]
-    note = (
-        f"Distances in standard deviations; below {APART:g} two causes look alike. Rows of further tests go below the"
-        " others. An instrument that is found right gets `checked = true` in the card; else correct its column."
-    )
+    note = f"Distances in standard deviations; below {APART:g} two causes look alike."
     return [
         Table("What to measure next", ("experiment", "separates", "now", "then"), rows, note),
         Table("What shows a cause directly", ("cause", "experiment"), exposing),
@@ -187,21 +185,18 @@ def sets(findings: Findings) -> list[Table]:
     # a rival that the data rule out can be told apart, whatever the design says of usual sizes
     unsettled = {c.id for c in findings.causes if c.probability >= RULED_OUT} | findings.named
     kept = [(s, [c for c in s.causes if c in unsettled]) for s in findings.sets]
-    alike = [(names_of(causes), sigma(s.distance), s.reason) for s, causes in kept if len(causes) > 1]
+    pairs = [(f"{name_of(one)} from {names_of(others, 'or')}", s) for s, (one, *others) in kept if others]
+    alike = [(said, sigma(s.distance), s.reason) for said, s in pairs]
     smallest = [
         (name_of(c.id), *(with_unit(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
         for c in findings.causes
         if c.usual is not None and any(other.detectable is not None for other in findings.causes)
     ]
     blind = [(name_of(i.cause), i.reason) for i in findings.invisible]
+    note = "Distance from the nearest in standard deviations."
     values = [(v.path, *(with_unit(x, v.unit) for x in (v.file, v.nominal, v.extended))) for v in findings.calibrated]
     return [
-        Table(
-            "Cannot be told apart by these data",
-            ("causes", "distance", "why"),
-            alike,
-            "Distance in standard deviations.",
-        ),
+        Table("Cannot be told apart by these data", ("causes", "distance", "why"), alike, note),
         tell_design(findings.isolability),
         Table("Smallest size found in 80 of 100 such campaigns", ("cause", "smallest", "usual", "meaning"), smallest),
         Table("Causes that these data cannot show", ("cause", "why"), blind),
