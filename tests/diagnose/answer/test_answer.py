@@ -9,21 +9,26 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.model.errors import SolveError
+from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer import compose, estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, Chance, decide, invisible, p_adequacy, temper
 from gearheat.tools.diagnose.answer.design import Design, Effects, find_alike, rank, simulate_design
-from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
-from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
+from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments, planned_campaign
+from gearheat.tools.diagnose.answer.findings import APART, UNEXPLAINED
+from gearheat.tools.diagnose.answer.pictures import pictures
 from gearheat.tools.diagnose.answer.predict import simulate
 from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, gross_readings, scatters
+from gearheat.tools.diagnose.infer.fit import Vector
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Acting, Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
 from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.report import extension, phrases
 from gearheat.tools.diagnose.setting import Setting, setting
+
+from .conftest import noisy
 
 TRUE = "sensor.oil_temp.offset"
 #: What may be wrong, and by how much the oil thermometer is, as the fixtures have it [K].
@@ -279,6 +284,46 @@ def designed(found: Found, setting: Setting) -> Design:
     return simulate_design(found.problem, found.null.look, found.null.noise, found.first, CAUSES, tried)
 
 
+def test_effects_are_as_uncertain_as_all_that_moves_them(wrong: tuple[Setting, Found]) -> None:
+    """The nuisances, too: less air cools less, by how much hangs on what the air takes."""
+    found = wrong[1]
+    problem, h = found.problem, next(h for h in found.hypotheses if h.causes == ("cooling.air",))
+    look, vector = h.fit.look, Vector(found.problem, h.fit.look)
+
+    def change(x: np.ndarray) -> np.ndarray:
+        z, acting = vector.split(x)
+        without = [replace(one, t=np.r_[0.0, one.t[1:]]) for one in acting]
+        here = replace(look, z=z)
+        return problem.shown(here, acting) - problem.shown(here, without)
+
+    steps = 1e-4 * np.eye(len(look.x))
+    by_hand = np.array([(change(look.x + step) - change(look.x - step)) / 2e-4 for step in steps])
+    oil = next(k for k, s in enumerate(problem.data.read) if s.kind == "oil_temp")
+    slope = by_hand[:, problem.data.kind == oil].mean(axis=1)
+    sd = float(np.sqrt(slope @ estimate.posterior(problem, h.fit) @ slope))
+    told = estimate.impacts(problem, h, {})["T_oil_K"]
+    assert (told.ci95[1] - told.ci95[0]) / (2 * 1.96) == pytest.approx(sd, rel=0.02)
+    assert abs(slope[: problem.nz]).max() > 0.05 * abs(slope).max()
+
+
+def test_a_picture_leaves_out_what_a_reference_tells_of_the_rig() -> None:
+    """Thermometers of both campaigns err by a course of the speed that is no cause."""
+    scenario, card = load("helical_two_stage"), Card()
+    plan = planned_campaign(scenario, card, None)
+    speed, oil = (next(s.name for s in plan.sensors if s.kind == kind) for kind in ("speed", "oil_temp"))
+    course = 2.0 * np.sin(6.0 * plan.values[speed] / plan.values[speed].max())
+    data, reference = (noisy(plan, offset, seed) for offset, seed in ((OFFSET, 3), (0.0, 4)))
+    both = [replace(c, values=c.values | {oil: c.values[oil] + course}) for c in (data, reference)]
+    made = setting(scenario, card, *both)
+    found = weigh(made.problem, [f for f in made.formulas if f.cause.id in CAUSES and f.form.name == ""])
+    leader = next(h for h in found.hypotheses if h.causes == (TRUE,))
+    (one,) = pictures(found, leader, ["order"])
+    own = made.problem.data.kind == next(k for k, s in enumerate(made.problem.data.read) if s.name == oil)
+    plain = (made.problem.measured - leader.fit.look.shown)[made.problem.own][own]
+    assert one.channel == oil and np.mean(one.before) == pytest.approx(OFFSET, abs=0.7)
+    assert np.std(one.after) < 0.7 * np.std(plain), (np.std(one.after), np.std(plain))
+
+
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
     made = designed(found, setting)
@@ -292,7 +337,7 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
     told = made.distances("bath")[pair]
     assert told > now[pair], "a bath tells an offset of a thermometer"
     assert told == pytest.approx(made.seen("bath").visible("cooling.air"), rel=0.02), "the air shows, or nothing does"
-    assert all(r.separation_after > r.separation_before for r in best)
+    assert all(r.separation_after > r.separation_before < APART for r in best), "what is told apart needs nothing"
 
 
 @pytest.mark.parametrize("sd", [1.0, 0.3])
