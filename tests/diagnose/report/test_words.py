@@ -190,6 +190,8 @@ def test_unlikely_causes_are_counted_not_listed() -> None:
     found = explained(causes=causes, answers=(Answer(causes=((CHURNING,),), probability=0.96),))
     assert "each of 4 further causes at most" in render(found)
     assert "mine.a" not in render(found)[: render(found).index("further causes at most")]
+    alone = render(explained(causes=causes[:2], answers=found.answers))
+    assert "1 further cause" in alone and "1 further causes" not in alone
     answers = (0.5, 0.3, 0.04, 0.03, 0.03)
     left_open = ambiguous(answers=tuple(Answer(causes=((AIR,),), probability=p) for p in answers)).says.verdict
     assert left_open.endswith("; or one of 3 less probable ones (10 % together).")

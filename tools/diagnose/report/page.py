@@ -74,8 +74,8 @@ def _bars(findings: Findings) -> list[dict[str, str]]:
     listed = tables.list_causes(findings)
     rows = [(name_of(c.id), c.id, c.probability, c.mc_error) for c in listed]
     if further := [c for c in findings.causes if c not in listed and c.probability >= LITTLE]:
-        most = max(c.probability for c in further)
-        rows.append((f"each of {len(further)} further causes at most", "", most, 0.0))
+        words = f"each of {len(further)} further causes at most" if len(further) > 1 else "1 further cause"
+        rows.append((words, "", max(c.probability for c in further), 0.0))
     rows += [("nothing wrong", "", findings.nothing, 0.0), ("less probable than those listed", "", rest, 0.0)]
     return [
         {"name": name, "id": id, "percent": phrases.percent(p, error), "width": f"{100 * min(p, 1.0):.1f}"}

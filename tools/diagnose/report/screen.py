@@ -47,7 +47,7 @@ def text(findings: Findings, *, everything: bool = False, width: int | None = No
     shown = findings.warnings if everything else findings.warnings[:WARNINGS]
     lines += [("warning", w) for w in shown]
     if more := len(findings.warnings) - len(shown):
-        lines.append(("", f"{more} more warnings: --all"))
+        lines.append(("", f"{more} more warning{'s' * (more > 1)}: --all"))
     found = [paragraph(word, line, width) for word, line in lines if line]
     if everything:
         found += [drawn(t, width) for t in tables(findings)]

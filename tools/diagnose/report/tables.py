@@ -108,8 +108,9 @@ def causes(findings: Findings) -> list[Table]:
         for k, h in enumerate(joint)
         if k == 0 or h.probability >= LEAST
     ]
-    if further := sum(h.probability for h in joint[len(together) :]):
-        together.append((percent(further), f"{len(joint) - len(together)} further ones together"))
+    rest = joint[len(together) :]
+    if further := sum(h.probability for h in rest):
+        together.append((percent(further), f"{len(rest)} further one{'s together' * (len(rest) > 1)}"))
     by_channel = []
     for v in findings.views:
         leading = ", ".join(f"{name_of(s.id)} {percent(s.probability)}" for s in v.causes[:NAMED])
