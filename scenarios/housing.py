@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..model.machines.spec import Spec
+from ..model.parts.lubrication import SIDES
 
-#: Sides of a housing.
-SIDES = ("length", "width", "height")
 #: Rounding of what is written [1].
 ROUNDED = 1.02
 

@@ -269,6 +269,14 @@ class Component:
         """What must hold between the parameters, each made by `relation`."""
         return ()
 
+    def relations_with(self, parts: Sequence[Component]) -> Iterable[Related]:
+        """What must hold between its parameters and those of other parts.
+
+        Args:
+            parts: all of the model
+        """
+        return ()
+
     @classmethod
     def spread(cls) -> Iterable[Mapping[str, str]]:
         """What the laws for such a part give at the same sizes: a line of texts each, the recommended one first."""

@@ -137,7 +137,7 @@ def _flat_model(
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [*_outputs(parts, joined), *_flows(assembly, flows)]
-    related = [pair for part in parts for pair in part.all_relations()]
+    related = [pair for part in parts for pair in (*part.all_relations(), *part.relations_with(parts))]
     energies = [energies_of(part) for part in parts]
     supplies = aliased([power for powers, _ in energies for power in powers])
     expressions = {

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import inf, nextafter
 from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
@@ -22,6 +24,8 @@ from .relations import require
 
 #: Parameters that say how a level moves.
 MOTION = ("A_oil", "width", "height", "share_air")
+#: Sides of a box.
+SIDES = ("length", "width", "height")
 
 
 class LubricantProperties(Component):
@@ -113,6 +117,14 @@ class OilBath(LubricantProperties):
         """A level that moves is given."""
         if self.in_motion and not self.has("sump"):
             yield f"{self.name} is in_motion and has no level. Give it: the height of its surface at rest."
+
+    def relations_with(self, parts: Sequence[Component]) -> Iterator[Related]:
+        """The oil stands below the top of the box that holds it; which one that is of several, nobody knows."""
+        boxes = [part for part in parts if part.role == "surface" and {*SIDES} <= part.parameters.keys()]
+        if "level" in self.told and len(boxes) == 1 and [part.role for part in parts].count(self.role) == 1:
+            height = boxes[0].symbols["height"]
+            relation, left = require(self, "level is below the top", height - self.level, nextafter(0.0, inf))
+            yield replace(relation, parameters=(*relation.parameters, *boxes[0].follows_from(height))), left
 
     def standing(self) -> Iterator[Equation]:
         """How high it stands."""

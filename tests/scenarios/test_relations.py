@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from gearheat.fmu.batch import Batch
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.laws.gears import profile_shift_sum, transverse_pressure_angle, working_pressure_angle
@@ -84,6 +85,18 @@ def test_what_does_not_fit_is_refused(name: str, values: dict[str, float], told:
         with pytest.raises(ScenarioError) as caught:
             steady(flat(name), values)
         assert any(told in problem for problem in caught.value.problems)
+
+
+def test_the_oil_stays_in_the_housing_wherever_the_level_comes_from() -> None:
+    """What the rig file refuses: in runs, in rows of a sweep, and in the search of a design."""
+    model, told = flat(HELICAL), 'oil: "level is below the top"'
+    with pytest.raises(ScenarioError, match=f"{told} does not hold: .*level = 5 m, cooling.height = "):
+        steady(model, {"oil.level": 5.0})
+    p = np.tile(model.starts("parameter"), (2, 1))
+    p[1, model.locate("oil.level")[1]] = 5.0
+    assert Batch(model).contradictions(p) == [None, told]
+    with pytest.raises(SolveError, match=f"(?s)out of reach.*limited by {told}"):
+        design(model, ["oil.level"], {"oil.T": 500.0}, {})
 
 
 def test_a_cylinder_wall_has_a_thickness() -> None:
