@@ -164,6 +164,18 @@ class FlatModel:
     relations: tuple[Relation, ...] = ()
     related: Any = field(default_factory=lambda: ca.SX(0, 1))
 
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields; expressions as one text, in which they keep their common symbols."""
+        fields = {name: value for name, value in vars(self).items() if name in type(self).__dataclass_fields__}
+        names = [name for name, value in fields.items() if isinstance(value, ca.SX)]
+        packed = ca.StringSerializer()
+        packed.pack([fields.pop(name) for name in names])
+        return fields | {"names": names, "text": packed.encode()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        names, packed = state.pop("names"), ca.StringDeserializer(state.pop("text"))
+        vars(self).update(state, **dict(zip(names, packed.unpack(), strict=True)))
+
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:
         """Path -> (kind, position), kind one of "state", "input", "parameter", "output"."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import re
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from pathlib import Path
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.model.run.steady import steady
 from matplotlib.axes import Axes
 
 ROOT = Path(__file__).parents[2]
@@ -97,6 +99,13 @@ def test_a_rig_changes_by_making_another(rig: gh.Rig) -> None:
     assert gh.steady(larger)["oil.T"] < gh.steady(rig)["oil.T"]
     with pytest.raises(gh.GearheatError, match="cooling"):
         rig["colling.A"]
+
+
+def test_answers_go_to_other_processes(rig: gh.Rig) -> None:
+    hot = gh.design(rig, ["cooling.A"], {"oil.T": "80 degC"})
+    for answer in (gh.steady(rig), hot, gh.sweep(rig, {"room.T": ("10 degC", "30 degC")}, sample=2)):
+        assert repr(pickle.loads(pickle.dumps(answer))) == repr(answer)
+    assert steady(pickle.loads(pickle.dumps(rig.flat)))["oil.T"] == gh.steady(rig)["oil.T"]
 
 
 def test_a_rig_is_written_and_read(rig: gh.Rig, tmp_path: Path) -> None:
