@@ -101,11 +101,16 @@ def test_a_rig_changes_by_making_another(rig: gh.Rig) -> None:
         rig["colling.A"]
 
 
+def test_a_rig_knows_its_names(rig: gh.Rig) -> None:
+    assert all(name in rig for name in ("cooling.A", "room.T", "oil.T", "gear_set.power_flow"))
+    assert not any(name in rig for name in ("cooling.a", "oil", "efficiency.eta"))
+
+
 def test_answers_go_to_other_processes(rig: gh.Rig) -> None:
     hot = gh.design(rig, ["cooling.A"], {"oil.T": "80 degC"})
     for answer in (gh.steady(rig), hot, gh.sweep(rig, {"room.T": ("10 degC", "30 degC")}, sample=2)):
         assert repr(pickle.loads(pickle.dumps(answer))) == repr(answer)
-    assert steady(pickle.loads(pickle.dumps(rig.flat)))["oil.T"] == gh.steady(rig)["oil.T"]
+    assert steady(pickle.loads(pickle.dumps(rig.flat)), {})["oil.T"][0] == gh.steady(rig)["oil.T"]
 
 
 def test_a_rig_is_written_and_read(rig: gh.Rig, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -63,6 +63,12 @@ class Rig(Quantities):
             choice = list_declared(self.scenario.spec.types[self.parts[part]], Choice)[key]
             return self.scenario.spec.part(part).values.get(key, choice.default)
         return self.flat.quantity(name).start
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of its values."""
+        kinds, derived = self.flat.index.items(), self.flat.derived
+        yield from choice_paths(self.scenario.spec)
+        yield from (name for name, (kind, _) in kinds if kind != "output" or name in derived)
 
     def with_(self, set: Settings, *, source: str = "") -> Rig:
         """The rig with other values.
