@@ -71,6 +71,9 @@ def test_temperatures_in_another_unit(read, helical):
     below = {**helical, "T_oil_K": helical["T_oil_C"]}
     del below["T_oil_C"]
     assert "below -60 degC. Check its unit, which is taken for K" in problems(read, "helical_two_stage", below)
+    fahrenheit = {**helical, "T_oil_C": [1.8 * v + 32 for v in helical["T_oil_C"]]}  # beside a room in degC
+    found = problems(read, "helical_two_stage", fahrenheit)
+    assert "In degF it would fit. Check its unit, which is taken for degC, and those of what drives it" in found
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
