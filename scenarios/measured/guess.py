@@ -98,7 +98,7 @@ def wanted_sensors(scenario: Scenario) -> dict[str, Sensor]:
 
 
 def _context(cells: Mapping[str, Sequence[str]], columns: Mapping[str, str]) -> dict[str, str]:
-    """Columns of the context by whole words; an oil has a name."""
+    """Columns of the context by whole words; an oil has a name, a point a number, and what has none names a test."""
     stems = {h: split_unit(h)[0].casefold() for h in cells}
     found = {}
     for name in (n for n in CONTEXT if n not in columns):
@@ -106,6 +106,9 @@ def _context(cells: Mapping[str, Sequence[str]], columns: Mapping[str, str]) -> 
         meant = [h for h, stem in stems.items() if stem in words or h.casefold() in words]
         if meant and not (name == "oil" and numbers(cells[meant[0]]) is not None):
             found[name] = meant[0]
+    if "point" in found and numbers(cells[found["point"]]) is None:
+        column = found.pop("point")
+        found |= {} if "test" in {*found, *columns} else {"test": column}
     return found
 
 

@@ -77,6 +77,13 @@ def test_german_columns_are_guessed_with_units_and_signs(table: Path, tmp_path: 
         gh.card("helical_two_stage", table, columns={"T_wall": "Gehause [°C]"})
 
 
+def test_readings_with_names_are_no_points(tmp_path: Path) -> None:
+    named = TABLE.replace("Messpunkt", "Nr").replace("\n", "\nV", 6)
+    (path := tmp_path / "feld.csv").write_text(named, encoding="utf-8")
+    found = gh.card("helical_two_stage", path)
+    assert not found.problems and found.columns["test"] == "Nr" and "point" not in found.columns
+
+
 def test_what_drives_is_what_the_table_has(tmp_path: Path) -> None:
     rows = [f"{600 + 100 * k};{12 + k},4;{22 + 2 * k},2;19,4" for k in range(7)]
     (path := tmp_path / "feld.csv").write_text("\n".join(["n_an [1/min];M1 [Nm];Öl;Halle", *rows]), encoding="utf-8")
