@@ -82,13 +82,15 @@ class Problems(list[str]):
             raise kind(self)
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
+def suggestion(name: str, known: Iterable[str], key: Callable[[str], str] = str) -> str:
     """' Did you mean "x"?' for a misspelt name, or an empty text.
 
     Args:
         name: what was written
         known: all names that would be right
+        key: what is compared of a name
     """
-    close = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
-    quoted = " or ".join(f'"{c}"' for c in close)
+    named = {key(k): k for k in reversed([*known])}
+    close = difflib.get_close_matches(key(name), [*named], n=3, cutoff=0.6)
+    quoted = " or ".join(f'"{named[c]}"' for c in close)
     return f" Did you mean {quoted}?" if close else ""

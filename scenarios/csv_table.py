@@ -323,6 +323,11 @@ def split_unit(column: str) -> tuple[str, str]:
     return column, ""
 
 
+def bare_name(column: str) -> str:
+    """What is compared of a column's name: without its unit, in small letters."""
+    return split_unit(column)[0].casefold()
+
+
 def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
     """Factor and offset that take a value of a unit to SI: value * factor + offset.
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from ...model.errors import suggestion
 from ...model.units import spell_unit
-from ..csv_table import split_unit
+from ..csv_table import bare_name, split_unit
 from ..scenario import Scenario
 from .card import Card
 from .sensors import CONTEXT, LOGGED, default_instruments
@@ -36,14 +36,14 @@ def misnamed(
     for key, column in card.columns.items():
         # one table of a card may lack what another has: what is compared may be missing, but not misspelt
         missing = key not in LOGGED and column not in header and column not in usual
-        if missing and (key not in read or suggestion(column, free)):
-            yield f'{card.name} columns.{key}: {name} has no column "{column}".{suggestion(column, header)}'
+        if missing and (key not in read or suggestion(column, free, bare_name)):
+            yield f'{card.name} columns.{key}: {name} has no column "{column}".{suggestion(column, header, bare_name)}'
     known = {*usual, *header, *(s.name for s in declared), *(s.column for s in declared)}
     for column, unit in card.units.items():
         said = split_unit(column)[1]
         if column not in known:
-            if column not in QUANTITIES and suggestion(column, header):
-                yield f'{card.name} units: {name} has no column "{column}".{suggestion(column, header)}'
+            if column not in QUANTITIES and suggestion(column, header, bare_name):
+                yield f'{card.name} units: {name} has no column "{column}".{suggestion(column, header, bare_name)}'
         elif said and column in header and spell_unit(unit) not in ("", said):
             yield (
                 f'{card.name} units.{column} = "{unit}": the name of the column says {said}. Rename the column, or take'

@@ -11,7 +11,7 @@ from ...model.errors import DataError, Problems, suggestion
 from ...model.files import tables
 from ...model.parts.shaft import ShaftEnd
 from ..csv_cells import numbers
-from ..csv_table import is_of, read_cells, split_unit
+from ..csv_table import bare_name, is_of, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card, CardSensor
 from .nominal import Nominal
@@ -67,7 +67,7 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
     cells = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
     columns = said.columns
     problems = Problems(
-        f'{path.name}: there is no column "{column}".{suggestion(column, header)}'
+        f'{path.name}: there is no column "{column}".{suggestion(column, header, bare_name)}'
         for column in (*columns.values(), *said.units)
         if column and column not in header
     )

@@ -17,7 +17,7 @@ import numpy as np
 from ...model.errors import DataError, Problems, suggestion
 from ...model.units import spell_unit
 from ..csv_cells import fold
-from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
+from ..csv_table import Column, Table, bare_name, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .against_model import unheld
 from .card import Card
@@ -101,8 +101,8 @@ def place_sensor(
             about = " If it was not measured, add what is known of it, and how well: channels.{}.offset_sd in the card."
             problems.append(
                 f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
-                f'{suggestion(sensor.column, header)} Add it, or name yours in the card: columns = {{ "{sensor.name}" ='
-                f' "..." }}.{about.format(sensor.name) if sensor.kind == "torque" else ""}'
+                f"{suggestion(sensor.column, header, bare_name)} Add it, or name yours in the card: columns = {{"
+                f' "{sensor.name}" = "..." }}.{about.format(sensor.name) if sensor.kind == "torque" else ""}'
             )
     return tuple(found), problems
 

@@ -251,6 +251,14 @@ def test_what_drives_the_model_must_be_there(read, helical):
     assert '"T_amb_C" drives the model (room.T)' in second
 
 
+def test_columns_are_alike_by_their_names_not_by_their_units(read, helical):
+    names = {"T_oil_C": "Oelsumpf [°C]", "T_amb_C": "Raum [°C]"}
+    columns = {names.get(c, c): v for c, v in helical.items()}
+    with pytest.raises(DataError) as error:
+        read("helical_two_stage", columns, 'columns = { T_oil = "Sumpf [°C]", T_amb = "Raum [°C]" }\n')
+    assert error.value.problems[0].endswith('has no column "Sumpf [°C]". Did you mean "Oelsumpf [°C]"?')
+
+
 def test_an_oil_that_the_catalogue_lacks_is_described_by_the_card(read, planetary):
     columns = {**planetary, "oil": ["VG 320"] * 12}
     with pytest.raises(DataError, match='unknown oil "VG 320"'):
