@@ -388,6 +388,7 @@ def _parse_assigned(target: Scenario | FlatModel, known: Mapping[str, Quantity],
     parts = [part.name for part in target.spec.parts] if isinstance(target, Scenario) else []
     if isinstance(target, Scenario) and path in parts:
         return target.entry_values(path, raw)
-    names = [*known, *parts]
-    close = suggestion(path, names) or f" Names: {', '.join(names[:8])}, ..."
+    names, (part, _, kind) = [*known, *parts], path.rpartition(".")
+    filled = isinstance(target, Scenario) and part in parts and kind in target.filled_with(part)
+    close = f' Write "{part}={raw}".' if filled else suggestion(path, names) or f" Names: {', '.join(names[:8])}, ..."
     raise ScenarioError(f'{target.name}: unknown name "{path}".{close}')

@@ -49,6 +49,11 @@ def test_a_catalogue_name_sets_all_of_its_part(scenario: Scenario) -> None:
     assert changed.spec.part("oil").values["V"] == pytest.approx(1e-3)
 
 
+def test_a_catalogue_is_no_value_of_its_part(scenario: Scenario) -> None:
+    """As an FMU has it: `oil.oil` chooses an oil there."""
+    assert problems(scenario, "oil.oil=MINR") == ('planetary: unknown name "oil.oil". Write "oil=MINR".',)
+
+
 def test_a_later_value_wins_over_a_catalogue_name(scenario: Scenario) -> None:
     values = parse_assignments(scenario, ["oil=MINR", "oil.nu_40=100 mm2/s"])
     assert values["oil.nu_40"] == pytest.approx(1e-4)

@@ -73,6 +73,7 @@ def test_what_the_duty_gives_cannot_be_set(gearheat, fmu, duty, tmp_path, text):
         (("gear_set.P_loss_sp=1 W",), "gear_set.P_loss_sp"),
         (("oil.V",), "oil.V"),
         (("oil=nope",), "cannot be set"),
+        (("oil=MINR",), 'Write "oil.oil=MINR"'),
     ],
 )
 def test_what_is_set_of_an_fmu(gearheat, fmu, duty, tmp_path, texts, words):

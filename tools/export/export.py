@@ -213,8 +213,9 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
             elif name in known:
                 values[name] = in_range("", written, known[name], sensible=ours)
             else:
-                every = [*known, *wholes]
-                why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)
+                filled = [f' Write "{one}={written}".' for one in wholes if wholes[one] and one.startswith(f"{name}.")]
+                close = filled[0] if filled else suggestion(name, [*known, *wholes])
+                why = f" It is calculated: {shown[name].doc}." if name in shown else close
                 problems.append(f'{about.path.name}: "{name}" cannot be set.{why}')
     problems.check()
     return values
