@@ -156,6 +156,8 @@ def describe(path: Path) -> Described:
         raise
     except FileNotFoundError:
         raise FmuError(f"{path}: there is no such file.") from None
+    except IsADirectoryError:
+        raise FmuError(f"{path}: is a folder. Give an FMU.") from None
     except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
         raise FmuError(f"{path}: this file is no FMU ({error}).") from error
     if problem := _unplayable(description, MODULE if web else own, sorted(held)):

@@ -49,6 +49,8 @@ def read_text(path: Path, kind: str, refused: type[GearheatError], encodings: Se
                     return text
     except FileNotFoundError:
         raise refused(f"{path}: there is no such file. Check the path.") from None
+    except IsADirectoryError:
+        raise refused(f"{path}: is a folder. Give a {kind} file.") from None
     except OSError as error:
         raise refused(f"{path}: cannot be read ({error.strerror}). Give a {kind} file.") from None
     raise refused(f"{path.name}: is not UTF-8 text. Save it as a {kind} file.")

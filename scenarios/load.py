@@ -100,6 +100,8 @@ def _find(name_or_path: str | Path) -> Path:
         for file in (path / "rig.toml", path, Path(f"{path}.toml")):
             if file.is_file():
                 return file
+        if path.is_dir():
+            raise ScenarioError(f"{path}: is a folder without a rig.toml. Give a rig file.")
     names = list_rigs()
     beside = [str(file) for file in sorted(path.parent.glob("*.toml"))]
     close = suggestion(str(name_or_path), [*names, *beside]) or suggestion(f"{name_or_path}.toml", beside)

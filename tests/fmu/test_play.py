@@ -183,6 +183,7 @@ def test_files_that_are_refused(rc_fmu: Path, tmp_path: Path) -> None:
     text = tmp_path / "text.fmu"
     text.write_text("no zip file")
     assert "is no FMU" in refusal(lambda: Player(text))
+    assert "is a folder" in refusal(lambda: Player(tmp_path))
     assert "no such file" in refusal(lambda: Player(tmp_path / "nothing.fmu"))
 
 

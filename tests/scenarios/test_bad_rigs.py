@@ -334,7 +334,7 @@ def test_no_such_rig(name: str, expected: str) -> None:
 
 
 def test_a_folder_without_a_rig(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match="there is no rig"):
+    with pytest.raises(ScenarioError, match=r"is a folder without a rig\.toml"):
         load(tmp_path)
 
 

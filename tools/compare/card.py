@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import DataError, Problems, ScenarioError
+from ...model.errors import Problems, ScenarioError
 from ...model.files import flows
 from ...scenarios.csv_table import read_cells
 from ...scenarios.frames import Table, path_of, rows_told
@@ -113,8 +113,6 @@ def card(
     if data is None:
         return CardText(scenario.name, default_card(scenario, priors))
     path, problems = path_of(data, name="--data"), Problems()
-    if not path.is_file():
-        raise DataError(f"--data {path}: there is no such file.")
     guessed = guess_card(path, scenario, Known(columns or {}, units or {}, magnitudes or {}))
     whole = default_card(scenario, priors, guessed)
     header, rows = read_cells(path)
