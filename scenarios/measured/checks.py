@@ -99,6 +99,21 @@ def same_as_reference(campaign: Campaign, reference: Campaign) -> list[str]:
     return []
 
 
+def not_in_reference(campaign: Campaign, reference: Campaign) -> list[str]:
+    """Warnings of what a campaign compares and its reference lacks.
+
+    Args:
+        campaign: readings of the machine
+        reference: readings of it when healthy
+    """
+    return [
+        f"{reference.name} lacks {sensor.column}, which {campaign.name} has: what it always is off by is not"
+        " calibrated, and may be taken for a fault. Give a reference with it."
+        for sensor in campaign.read
+        if sensor.name not in reference.values
+    ]
+
+
 def outlying(campaign: Campaign, points: Campaign) -> list[str]:
     """Warnings of points to predict that are far outside of what was measured.
 

@@ -202,9 +202,8 @@ def check(data: Logs) -> None:
         if missing:
             problems.append(f"{log.name}: has no column for {', '.join(sorted(missing))}, which {first.name} has.")
         if log.dated != first.dated:
-            problems.append(
-                f"{log.name}: has {'dates' if log.dated else 'seconds'}, {first.name} has not. Make them alike."
-            )
+            kind = "dates" if log.dated else "seconds"
+            problems.append(f"{log.name}: has {kind}, {first.name} has not. Make them alike.")
     if problems:
         raise DataError(problems)
 

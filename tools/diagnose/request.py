@@ -10,7 +10,7 @@ from pathlib import Path
 from ...model.errors import DataError, Problems, suggestion
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
-from ...scenarios.measured.checks import invisible, outlying, same_as_reference, too_small
+from ...scenarios.measured.checks import invisible, not_in_reference, outlying, same_as_reference, too_small
 from ...scenarios.measured.condense import condensed
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.series import read_samples, series_of
@@ -96,6 +96,8 @@ class Inputs:
         tables += [c.series.warnings for c in (self.data, self.reference) if c is not None and c.series is not None]
         if self.reference is not None and self.data is not None and self.data.series and not self.reference.series:
             tables.append((ALONE,))
+        if self.data is not None and self.reference is not None:
+            tables.append(tuple(not_in_reference(self.data, self.reference)))
         if self.data is not None and self.points is not None:
             tables.append(tuple(outlying(self.data, self.points)))
         return tuple(dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found))
@@ -194,7 +196,8 @@ class _Reader:
         self, request: Request | PlanRequest, written: Mapping[str, Path | None], problems: Iterable[str]
     ) -> None:
         files = request.files()
-        lost = [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
+        said = {True: "is a folder. Give a file", False: "there is no such file"}
+        lost = [f"{name} {path}: {said[path.is_dir()]}." for name, path in files if not path.is_file()]
         self.problems = Problems([*problems, *request.problems(), *lost, *_shared(files, written)])
         card = request.card
         self.card = self.problems.of(lambda: read_card(card)) if card is None or card.is_file() else None
@@ -205,16 +208,15 @@ class _Reader:
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""
-        scenario = self.scenario
-        if path is None or scenario is None or not path.is_file():
+        scenario, card = self.scenario, self.card
+        if path is None or scenario is None or card is None or not path.is_file():
             return None
-        card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
         return self.problems.of(lambda: read_campaign(path, scenario, card, points=points))
 
     def logged(self, campaign: Campaign | None, path: Path | None) -> Campaign | None:
         """A table with the logged courses of its tests, where there are any."""
-        scenario, card = self.scenario, self.card or Card()
-        if path is None or scenario is None or not path.is_file():
+        scenario, card = self.scenario, self.card
+        if path is None or scenario is None or card is None or not path.is_file():
             return campaign
         samples = self.problems.of(lambda: read_samples(path, scenario, card))
         if campaign is None or samples is None:

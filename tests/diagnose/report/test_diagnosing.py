@@ -100,6 +100,14 @@ def test_all_problems_at_once(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [card]
 
 
+def test_a_card_that_cannot_be_read_is_the_one_problem(tmp_path: Path) -> None:
+    (card := tmp_path / "card.toml").write_text("columns = {")
+    for wrong, told in ((card, "TOML syntax"), (tmp_path, "is a folder")):
+        with pytest.raises(DataError, match=told) as caught:
+            diagnose_command(DATA, Outputs(), infer, card=wrong)
+        assert len(caught.value.problems) == 1
+
+
 def test_a_series_needs_the_readings_of_its_tests() -> None:
     request = Request(RIG, series=DATA, reference_series=DATA)
     told = "\n".join(request.problems())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.scenarios.measured.checks import outlying, same_as_reference, too_small
+from gearheat.scenarios.measured.checks import not_in_reference, outlying, same_as_reference, too_small
 from made_tables import made
 
 
@@ -127,6 +127,13 @@ def test_too_few_rows_and_a_campaign_that_is_its_own_reference(read, helical):
     assert not too_small(whole) and "4 readings of 4 tests are too few" in too_small(short)[0]
     assert "its readings are those of the reference" in same_as_reference(whole, whole)[0]
     assert not same_as_reference(short, whole)
+
+
+def test_a_reference_without_a_compared_channel_warns(read, helical):
+    whole = read("helical_two_stage", helical)
+    assert not not_in_reference(whole, whole)
+    less = read("helical_two_stage", {c: v for c, v in helical.items() if c != "T_wall_C"})
+    assert [text.partition(",")[0] for text in not_in_reference(whole, less)] == ["data.csv lacks T_wall_C"]
 
 
 def test_points_far_outside_warn(read, helical):
