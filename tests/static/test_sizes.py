@@ -43,9 +43,9 @@ def test_no_function_is_longer_than_60_lines() -> None:
     ]
 
 
-def test_the_diagnosis_has_at_most_13026_lines_of_python_and_c() -> None:
+def test_the_diagnosis_has_at_most_13024_lines_of_python_and_c() -> None:
     sources = [*modules("tools/diagnose"), *(ROOT / "tools/diagnose").rglob("*.c")]
-    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in sources) <= 13026
+    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in sources) <= 13024
 
 
 def test_no_function_of_the_diagnosis_takes_more_than_six_parameters() -> None:
