@@ -324,6 +324,11 @@ def test_another_instrument_that_may_err_is_told() -> None:
     assert phrases.where(alone, torques) == "T_input"
 
 
+def test_none_of_a_thousand_draws_is_below_one_of_a_thousand() -> None:
+    assert phrases.chance(1 / 1001).startswith("fewer than 1 of 1000") and "(p < 1e-3)" in phrases.chance(1 / 1001)
+    assert "(p = 2e-5)" in phrases.chance(2e-5) and phrases.chance(0.02).startswith("2 of 100 ")
+
+
 def test_names() -> None:
     assert name_of("sensor.oil_temp.lag") == "lag of the oil thermometer"
     assert name_of("mine.sticky_valve") == "sticky valve"

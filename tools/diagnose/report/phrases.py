@@ -103,7 +103,7 @@ def chance(p: float) -> str:
     for out_of in (100, 1000):
         if p * out_of >= 1:
             return f"{out_of * p:.0f} of {out_of} campaigns without a fault deviate as much ({p_value(p)})"
-    return f"fewer than 1 of 1000 campaigns without a fault deviate as much ({p_value(p)})"
+    return f"fewer than 1 of 1000 campaigns without a fault deviate as much ({p_value(p).replace('= 1e-3', '< 1e-3')})"
 
 
 def estimate(found: Estimate) -> str:
