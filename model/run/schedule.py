@@ -45,6 +45,10 @@ class Schedule:
         """Last time [s]."""
         return float(self.time[-1])
 
+    def even(self, step: float) -> np.ndarray:
+        """Times at even steps from its start on, and its end [s]."""
+        return np.unique(np.append(np.arange(self.start, self.stop, step), self.stop))
+
     def stretches(self) -> list[slice]:
         """The points between jumps: per stretch the slice of points over which all inputs are continuous."""
         jumps = np.flatnonzero(np.diff(self.time) == 0)

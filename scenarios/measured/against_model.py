@@ -207,12 +207,15 @@ def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, floa
     if below < -PROBE_ERROR and not started and all(model > SMALL_RISE for _, _, model in rises):
         yield f"{where} Losses keep a machine warmer than its room: check {sensor.column} and {rooms[0].column}."
         return
+    far = middle > RISE_FACTOR or not (short or middle >= 1 / RISE_FACTOR)
+    if not far and middle <= SLIP_FACTOR:
+        return
     alone = np.median([(in_unit(r + room[k], "degC") - 32) / 1.8 + 273.15 - room[k] for k, r, _ in rises])
     both = np.median([r for _, r, _ in rises]) / 1.8 if np.nanmedian(room) > WARM_ROOM else np.nan
     usual = np.median([m for _, _, m in rises])
     fits = any(usual / SLIP_FITS < rise < usual * SLIP_FITS for rise in (alone, both))
     degF = " In degF it would fit." if fits and middle > SLIP_FACTOR and sensor.unit == "degC" else ""
-    if middle > RISE_FACTOR or not (short or middle >= 1 / RISE_FACTOR):
+    if far:
         given = ", ".join(f"{s.column} ({s.unit})" for s in campaign.given)
         yield f"{where}{degF} Check its unit, which is taken for {sensor.unit}, and those of what drives it: {given}."
     elif degF:

@@ -156,7 +156,8 @@ class _Sensors:
         for key, channel in self.card.channels.items():
             if (name := self._name(key)) is not None:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
-                self.checked |= {name} if channel.checked else set()
+                if channel.checked:
+                    self.checked.add(name)
             else:
                 self._refuse(f"channels.{key}", key)
         self._priors()

@@ -8,8 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
 from ...model.errors import FmuError, Problems, ScenarioError, suggestion
@@ -161,7 +159,7 @@ def play(
     inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
     run = partial(play_fmu, about) if ours else partial(play_apart, fmu)
     between = output_step(schedule, every, dt)
-    times = None if between == dt else [*np.arange(schedule.start, schedule.stop, between), schedule.stop]
+    times = None if between == dt else schedule.even(between)
     played = run(inputs, schedule.stop, dt, begin=schedule.start, start=start, output_times=times)
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}

@@ -83,7 +83,7 @@ def reference_run(flat: FlatModel, duty: Schedule, start: Mapping[str, float]) -
         start: start values that are not those of the model
     """
     states = {q.name: start[q.name] for q in flat.states if q.name in start}
-    times = np.unique(np.append(np.arange(duty.start, duty.stop, step_of(duty)), duty.stop))
+    times = duty.even(step_of(duty))
     try:
         return simulate(flat, duty, start=states, times=times)
     except GearheatError as error:

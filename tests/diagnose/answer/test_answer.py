@@ -445,6 +445,8 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
     assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
     assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
     assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
+    checked = replace(campaign, sensors=tuple(replace(s, checked=s.kind != "torque") for s in campaign.sensors))
+    assert [e.id for e in list_experiments(checked, setting.nominal.value) if e.checks] == ["tare", "lever_arm"]
     made = designed(wrong[1], setting)
     weights = dict.fromkeys(CAUSES, 0.25)
     assert all(r.separation_after >= r.separation_before + 0.1 for r in rank(made, weights))

@@ -104,7 +104,8 @@ def list_experiments(campaign: Campaign, usual: Callable[[str], float]) -> tuple
     """
     speed = campaign.driving("speed")
     fastest = abs(usual(speed.reads)) if speed else 0.0
-    return (*_tests(campaign, fastest), *_checks(campaign))
+    doubtful = replace(campaign, sensors=tuple(s for s in campaign.sensors if not s.checked))
+    return (*_tests(campaign, fastest), *_checks(doubtful))
 
 
 def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
@@ -133,18 +134,16 @@ def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
 
 
 def _checks(campaign: Campaign) -> Iterator[Experiment]:
-    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp") and not s.checked):
+    if bath := tuple(Check(s.name, BATH, BESIDE) for s in campaign.read if s.kind.endswith("_temp")):
         yield Experiment("bath", "all thermometers in one bath, at 20 and at 60 degC", checks=bath)
-    torques = [s for s in campaign.sensors if s.kind == "torque" and not s.checked]
-    if torques:
+    if torques := [s for s in campaign.sensors if s.kind == "torque"]:
         tare = tuple(Check(s.name, (0.0,) * 3, TARE * s.repeat_sd) for s in torques)
         yield Experiment("tare", "a tare of all torque transducers", checks=tare)
         top = {s.name: float(np.nanmax(np.abs(campaign.values[s.name]))) for s in torques}
         lever = tuple(Check(s.name, (0.0, top[s.name]), TARE * s.repeat_sd, 5e-4 * top[s.name]) for s in torques)
         yield Experiment("lever_arm", "all torque transducers under a lever arm, empty and loaded", checks=lever)
     means = {s.name: float(np.nanmean(np.abs(campaign.values[s.name]))) for s in campaign.given}
-    driving = [s for s in campaign.given if not s.checked]
-    of_kind = {kind: [s for s in driving if s.kind == kind] for kind in ("ambient", "speed")}
+    of_kind = {kind: [s for s in campaign.given if s.kind == kind] for kind in ("ambient", "speed")}
     if rooms := tuple(Check(s.name, (means[s.name],) * 4, s.repeat_sd, THERMOMETER) for s in of_kind["ambient"]):
         yield Experiment("room_probe", "a reference thermometer for the room, away from the machine", checks=rooms)
     if speeds := tuple(Check(s.name, (means[s.name],) * 2, STROBOSCOPE * means[s.name]) for s in of_kind["speed"]):

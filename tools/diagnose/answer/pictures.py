@@ -66,10 +66,9 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     It is drawn against what the cause acts on; against the running order where this is none of the quantities.
     """
     problem, fit, o = found.problem, h.fit, found.problem.data
-    V, off, own, rest = fit.noise.covariance, problem.measured - fit.look.shown, problem.own, slice(o.m, None)
-    told = np.linalg.solve(V[rest, rest], V[rest, own]).T  # by a reference, of what the rig errs by in both
-    left, sd = off[own] - told @ off[rest], np.sqrt(np.diag(V[own, own] - told @ V[rest, own]))
-    made = []
+    own = np.arange(problem.m) < o.m  # a reference tells what the rig errs by in both
+    V, left = _given_others(fit.noise.covariance, problem.measured - fit.look.shown, own)
+    sd, made = np.sqrt(np.diag(V)), []
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
         effect = (fit.look.shown - problem.shown(fit.look, others))[own]
@@ -92,20 +91,16 @@ def views(found: Found) -> tuple[View, ...]:
     """
     problem, o, first = found.problem, found.problem.data, found.first
     whole, e = found.null.linear(problem)
-    V, r = whole.L @ whole.L.T, whole.L @ e
+    V, all_of_them = whole.L @ whole.L.T, np.column_stack([whole.L @ e, first.effects])
     compared = channels.compared(o)
     weights, prior = first.weights(found.prior), priors(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
     for _, s, ends in compared if len(compared) > 1 else ():
-        mine = np.zeros(problem.m, dtype=bool)
-        mine[problem.own] = ends
-        given = White.of(V[np.ix_(~mine, ~mine)])
-        tie = given(V[np.ix_(~mine, mine)])
-        white = White.of(V[np.ix_(mine, mine)] - tie.T @ tie)
-        deviation = r[mine] - tie.T @ given(r[~mine])
-        effects = white(first.effects[mine] - tie.T @ given(first.effects[~mine]))
-        left = white(deviation)
+        mine = np.append(ends, np.zeros(problem.m - o.m, dtype=bool))
+        own, deviations = _given_others(V, all_of_them, mine)
+        deviation, white = deviations[:, 0], White.of(own)(deviations)
+        left, effects = white[:, 0], white[:, 1:]
         logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), *prior)
         total = np.logaddexp.reduce([np.logaddexp.reduce(logs), found.critical])
         chances = {c: float(np.exp(np.logaddexp.reduce(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
@@ -125,6 +120,12 @@ def views(found: Found) -> tuple[View, ...]:
             )
         )
     return tuple(told)
+
+
+def _given_others(V: np.ndarray, e: np.ndarray, mine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of some readings (M,) given all others: their covariance, and errors (M,) or (M, k) less what the others tell."""
+    told = np.linalg.solve(V[np.ix_(~mine, ~mine)], V[np.ix_(~mine, mine)]).T
+    return V[np.ix_(mine, mine)] - told @ V[np.ix_(~mine, mine)], e[mine] - told @ e[~mine]
 
 
 def _asks(sensor: Sensor, read: Sequence[Sensor]) -> str:
