@@ -271,3 +271,18 @@ def test_slopes_are_those_of_the_likelihood(own_unit: Path, tmp_path: Path, mome
         step = 1e-3 * sd[k] * np.eye(len(sd))[k]
         by_hand = (likelihood(at + step) - likelihood(at - step)) / (2e-3 * sd[k])
         assert slope[k] == pytest.approx(by_hand, rel=0.05), name
+
+
+def test_what_scatters_by_much_counts(own_unit: Path, tmp_path: Path) -> None:
+    """A torque of large numbers, to which a standard deviation of a missing temperature was a small one."""
+    log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1), scenario)
+    names = [s.name for s in log.sensors if s.role == "read"]
+    log = replace(log, sensors=tuple(replace(s, repeat_sd=40.0) if s.name == "T_input" else s for s in log.sensors))
+    own = filter_of(scenario, log)
+    data, k = windows([log], own.given, own.read), [knob.name for knob in own.knobs].index("T_input: gain")
+    told = own.run(data, np.zeros((len(data.time), len(own.knobs)))).curvature[:, k, k].sum()
+    shown = np.where(data.piece[:, :, None] >= 0, data.read, 0.0)[:, :, names.index("T_input")]
+    pieces = data.piece.max(axis=1) + 1
+    assert told == pytest.approx(
+        float((shown.sum(axis=1) / data.counts.sum(axis=1)) ** 2 @ pieces / (3 * 40) ** 2), rel=0.5
+    )

@@ -27,9 +27,9 @@ typedef struct { double *slope, *curvature, *shown; } Told;
 
 #define LOG_GAMMA 0.29289321881345247560
 /* Newton's corrections at most, the last of them over the nominals, the longest one; a shorter one from some on, as a
-   relay may throw it about; standard deviation of a missing reading [K]. */
+   relay may throw it about; variance of a missing reading over that of one that is there. */
 enum { LOG_MOST = 30, LOG_SHORTER = 6 };
-static const double LOG_SETTLED = 1e-10, LOG_LONG = 2, LOG_SHORT = 0.3, MISSING = 1e4;
+static const double LOG_SETTLED = 1e-10, LOG_LONG = 2, LOG_SHORT = 0.3, MISSING = 1e8;
 
 typedef struct {
   Runs runs;
@@ -183,8 +183,8 @@ static void log_count(Follow *F, lanes *by_z, lanes counts, lanes ends) {
   const whole m = F->reads, k = F->logs->k;
   const double tails = *F->logs->tails;
   for (whole i = 0; i < m; i++) {
-    const lanes there = lanes_only(F->variance[i] < MISSING, counts);
-    const double sd = F->logs->spread[i];
+    const double sd = F->logs->spread[i], own = F->logs->scatter[i] * F->logs->scatter[i];
+    const lanes there = lanes_only(F->variance[i] == own, counts);
     F->many[i] += there, F->sum[i] += there * F->e[i];
     for (whole c = 0; c < k; c++) F->sum_by[i * k + c] += lanes_only(there != 0, by_z[c * m + i]);
     if (!lanes_any(lanes_where(ends != 0))) continue;
@@ -287,8 +287,8 @@ static void log_sample(Follow *F, const Told *told) {
   for (whole i = 0; i < m; i++) {
     const lanes y = F->shown[i] + F->offset[i];
     EACH {
-      const double e = D->read[at[l] * m + i] - y[l];
-      F->e[i][l] = isfinite(e) ? e : 0, F->variance[i][l] = isfinite(e) ? D->scatter[i] * D->scatter[i] : MISSING * MISSING;
+      const double e = D->read[at[l] * m + i] - y[l], own = D->scatter[i] * D->scatter[i];
+      F->e[i][l] = isfinite(e) ? e : 0, F->variance[i][l] = isfinite(e) ? own : MISSING * own;
       if (R->on[l]) told->shown[at[l] * m + i] = y[l];
     }
   }
