@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,6 +25,9 @@ ALIKE = 24
 HANGS = 5
 #: while a quantity that drives the rig moves over this share of its range in the log.
 MOVES = 0.3
+#: What drives the rig is not known where it is missing for longer than this [s], and than so many times its usual gap.
+LONG = 1800.0
+USUAL = 2.0
 #: Odd number by which the rows of a block are told apart modulo 2^64: 2^64 over the golden ratio.
 MULTIPLIER = np.uint64(11400714819323198485)
 
@@ -58,6 +62,31 @@ def check_log(
     nominal = Nominal(drive_by(scenario, sensors))
     check(_as_campaign(name, sensors, values, lines, step), nominal, {})
     return (*unmeasured(nominal, name, sensors), *_hanging(name, sensors, values, lines))
+
+
+def find_unseen(
+    name: str, sensors: Sequence[Sensor], values: Mapping[str, np.ndarray], lines: np.ndarray, step: float
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Rows in which it is not known what drives the rig (n,) bool, and what the user should know of them.
+
+    Args:
+        name, sensors, values, lines, step: as of `check_log`
+    """
+    unseen, said = np.zeros(len(lines), dtype=bool), []
+    for s in (s for s in sensors if s.role == "given"):
+        known = np.flatnonzero(np.isfinite(values[s.name]))
+        most = max(LONG / step, USUAL * float(np.median(np.diff(known))) if len(known) > 1 else 0.0)
+        ends = np.concatenate([[-1], known, [len(lines)]])
+        holes = [(a + 1, b) for a, b in pairwise(ends) if b - a - 1 > most]
+        for begin, end in holes:
+            unseen[begin:end] = True
+        if holes:
+            (begin, end), many = holes[0], sum(b - a for a, b in holes)
+            said.append(
+                f"{name}: {s.column}, which drives the rig, is missing in {many} rows, first in lines {lines[begin]} to"
+                f" {lines[end - 1]}. These rows are left out."
+            )
+    return unseen, tuple(said)
 
 
 def _hanging(

@@ -22,7 +22,7 @@ from ..csv_table import header_problems, in_si, plain, raise_all, split_unit, ta
 from ..scenario import Scenario
 from .card import Card
 from .checks import COLDEST, HOTTEST
-from .log_checks import check_log
+from .log_checks import check_log, find_unseen
 from .read import place_sensor
 from .sensors import SI, sensors_of, si_of
 from .shafts import torques
@@ -159,8 +159,9 @@ def log_of(
     raise_all(problems, name)
     sensors, values = torques(scenario, sensors, values, name)
     values, gross = _remove_outliers(name, values, sensors, stretch, lines)
-    warnings = (*said, *check_log(name, sensors, values, lines, step, scenario))
-    return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings)
+    unseen, left_out = find_unseen(name, sensors, values, lines, step)
+    warnings = (*said, *check_log(name, sensors, values, lines, step, scenario), *left_out)
+    return Log(name, sensors, values, time, stretch, step, lines, dated, gross, warnings).rows(~unseen)
 
 
 def _columns(header: Sequence[str], scenario: Scenario, card: Card, name: str) -> tuple[tuple[Sensor, ...], Problems]:

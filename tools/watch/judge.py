@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...model.errors import DataError
 from ...scenarios.measured.logs import Log, log_of
 from ...scenarios.measured.times import BARE, NUMBERS
 from ..diagnose.answer import channels
@@ -74,6 +75,8 @@ class Judge:
     def answer(self, machine: str, kind: str, times: Sequence[float], rows: Sequence[Cells]) -> dict[str, Any]:
         """What samples say: temperatures of their last window, and what has changed; as `log`."""
         log = self.log(machine, kind, times, rows)
+        if log.lines[-1] <= len(rows):  # of the last samples it is not known what drove the rig
+            raise DataError(log.warnings[-1:])
         data = Logs([log], self.reference, self.siblings)
         check(data)
         known, formulas = self.known(log)

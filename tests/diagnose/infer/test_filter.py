@@ -9,6 +9,7 @@ from pathlib import Path
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.model.errors import DataError
 from gearheat.model.machines.roles import Roles
 from gearheat.model.run.schedule import Schedule
 from gearheat.model.run.simulate import simulate
@@ -17,12 +18,15 @@ from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.logs import Log, read_log
 from gearheat.scenarios.measured.nominal import drive_by
 from gearheat.scenarios.measured.sensors import sensors_of
+from gearheat.scenarios.measured.times import NUMBERS
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.diagnose.infer.logs import filter_of
 from gearheat.tools.diagnose.infer.walk import curves, independent
 from gearheat.tools.diagnose.library.knobs import knobs
 from gearheat.tools.diagnose.model.logs import Passed, log_likelihood
 from gearheat.tools.diagnose.model.windows import windows
+from gearheat.tools.diagnose.request import Inputs, Request
+from gearheat.tools.watch.judge import Judge
 
 #: Nothing differs.
 NONE: Mapping[str, float] = {}
@@ -124,6 +128,58 @@ def test_thermometers_that_end(tmp_path: Path) -> None:
     assert None in found.rows.channels["T_wall"].measured
     told = [event["event"] for event in gh.watch("helical_two_stage", path, once=True)]
     assert told.count("window") == 2 and "alarm" not in told
+
+
+def blanked(path: Path, *gone: str, rows: slice) -> Path:
+    """The log without some cells."""
+    head, *table = [line.split(",") for line in path.read_text().splitlines()]
+    for row in table[rows]:
+        for name in gone:
+            row[head.index(name)] = ""
+    path.write_text("".join(",".join(row) + "\n" for row in [head, *table]))
+    return path
+
+
+@pytest.mark.parametrize("column", ["T_amb_C", "T_output_Nm"])
+def test_rows_of_which_it_is_not_known_what_drives_the_rig_are_left_out(column: str, tmp_path: Path) -> None:
+    """The room was at 0 K in windows without its temperature, and elsewhere at a straight line through the gap."""
+    scenario = load("helical_two_stage")
+    whole = read(record(tmp_path / "log.csv", scenario, 1), scenario)
+    log = read(blanked(tmp_path / "log.csv", column, rows=slice(200, 650)), scenario)
+    assert log.n == whole.n - 450 and log.stretch.tolist() == [0] * 200 + [1] * 70
+    assert log.warnings[-1] == (
+        f"log.csv: {column}, which drives the rig, is missing in 450 rows, first in lines 202 to 651."
+        " These rows are left out."
+    )
+    judge = Judge(Inputs(Request("helical_two_stage"), scenario, Card(), None, None, None))
+    head, *rows = [line.split(",") for line in (tmp_path / "log.csv").read_text().splitlines()[:221]]
+    cells = [{name: float(cell) for name, cell in zip(head[1:], row[1:], strict=True) if cell} for row in rows]
+    with pytest.raises(DataError, match=f"{column}, which drives the rig, is missing in 20 rows"):
+        judge.answer("a", NUMBERS, [STEP * k for k in range(220)], cells)
+
+
+def test_a_slow_input_is_held_between_its_samples(tmp_path: Path) -> None:
+    """Also in windows without any: a stretch of a few rows has none, and the room was at 0 K there."""
+    scenario = load("helical_two_stage")
+    blanked(record(tmp_path / "log.csv", scenario, 1), "T_amb_C", rows=slice(1, 11))
+    for k in range(1, 60):
+        blanked(tmp_path / "log.csv", "T_amb_C", rows=slice(12 * k + 1, 12 * k + 11))
+    log = read(tmp_path / "log.csv", scenario)
+    assert log.n == N and not [text for text in log.warnings if "left out" in text]
+    own = filter_of(scenario, log)
+    data = windows([replace(log, stretch=np.arange(N) // 5)], own.given, own.read)
+    room = data.given[:, :, own.given.index("T_amb")]
+    assert room[data.there].min() > 273
+
+
+def test_a_channel_of_every_second_sample_counts_where_others_were_read_at_moments(tmp_path: Path) -> None:
+    """No two of its neighbours have a mean, so that it told nothing."""
+    scenario = load("helical_two_stage")
+    log = read(blanked(record(tmp_path / "log.csv", scenario, 1), "T_oil_C", rows=slice(0, N, 2)), scenario)
+    own = filter_of(scenario, log)
+    own.moments, data = True, windows([log], own.given, own.read)
+    error = own.run(data, np.zeros((len(data.time), len(own.knobs))), slopes=False).error
+    assert len(set(np.isfinite(error).sum(axis=(0, 1)))) == 1
 
 
 def test_what_is_not_read_has_no_error(tmp_path: Path) -> None:

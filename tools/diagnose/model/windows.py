@@ -55,10 +55,10 @@ class Windows:
 
     def paired(self) -> Windows:
         """The same of what was read at moments: means of neighbours, which are means over the time between them."""
-        both = ((a[:, 1:] + a[:, :-1]) / 2 for a in (self.given, self.read))
-        given, read = (
-            np.concatenate([a[:, :1], m], axis=1) for a, m in zip((self.given, self.read), both, strict=True)
-        )
+        given, read = self.given.copy(), self.read.copy()
+        given[:, 1:] = (self.given[:, 1:] + self.given[:, :-1]) / 2
+        both = (self.read[:, 1:] + self.read[:, :-1]) / 2
+        read[:, 1:] = np.where(np.isfinite(both), both, self.read[:, 1:])  # a slow channel has no two in a row
         return replace(self, given=given, read=read)
 
     @property
@@ -118,20 +118,20 @@ def windows(
     n, longest = len(parts), max(len(rows) for _, _, rows, _ in parts)
     u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
     slow, courses = y.copy(), [{name: _slow(log, name) for name in read if name in log.values} for log in logs]
+    driven = [{name: _held(log.values[name]) for name in given} for log in logs]
     counts, there = np.zeros((2, n, longest), dtype=bool)
     at = np.full((n, longest), -1)
     for i, (number, log, rows, skipped) in enumerate(parts):
         m = len(rows)
         signs = {s.name: s.signs[0] for s in log.sensors}
-        u[i, :m] = np.array([_held(log.values[name][rows]) * signs[name] for name in given]).T
+        u[i, :m] = np.array([driven[number][name][rows] * signs[name] for name in given]).T
         for j, name in enumerate(read):
             if name in log.values:
                 y[i, :m, j] = log.values[name][rows] * signs[name]
                 slow[i, :m, j] = courses[number][name][rows] * signs[name]
         there[i, :m], counts[i, skipped:m], at[i, :m] = True, True, rows
-    machine = np.array([number for number, *_ in parts])
     time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in parts])
-    return Windows(u, y, there, counts, slow, machine, time, at, logs[0].step)
+    return Windows(u, y, there, counts, slow, np.array([k for k, *_ in parts]), time, at, logs[0].step)
 
 
 def _cut(stretch: np.ndarray, length: int, settling: int) -> Iterator[tuple[np.ndarray, int]]:
