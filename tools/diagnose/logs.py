@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,6 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...scenarios.measured.logs import Log, read_log
-from ...scenarios.measured.table import Sensor
 from .answer import channels, compose, findings as f
 from .answer.decide import Decision, decide, temper
 from .answer.estimate import impacts_of
@@ -20,7 +20,7 @@ from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
-from .infer.logs import Fleet, Question, fleet, problem_of, question, window_length
+from .infer.logs import LATER, Fleet, Question, fleet, problem_of, question, window_length
 from .infer.problem import Aside
 from .infer.weigh import Options, Progress, weigh
 from .library.knobs import moves
@@ -82,11 +82,8 @@ def read_logs(inputs: Inputs) -> Logs:
     request, problems = inputs.request, Problems()
 
     def read(paths: Sequence[Path]) -> tuple[Log, ...]:
-        found = []
-        for path in paths:
-            with problems:
-                found.append(read_log(path, inputs.scenario, inputs.card))
-        return tuple(found)
+        found = [problems.of(partial(read_log, path, inputs.scenario, inputs.card)) for path in paths]
+        return tuple(log for log in found if log is not None)
 
     data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
     problems.check(DataError)
@@ -140,8 +137,7 @@ def judged(
     request, problem = inputs.request, problem_of(known, asked, logs.logs)
     formulas = tuple(formulas or formulas_of(known, logs.logs[0]))
     causes = tuple({formula.cause.id: formula.cause for formula in formulas}.values())
-    scenario = inputs.scenario
-    made = Setting(scenario, scenario.spec, causes, formulas, problem)
+    made = Setting(inputs.scenario, inputs.scenario.spec, causes, formulas, problem)
     options = Options(request.alpha, request.seed, request.causes)
     found = temper(weigh(problem, formulas, options, lambda t, p: progress(t, 0.62 + 0.2 * p)))
     decision = decide(found)
@@ -157,7 +153,7 @@ def composed(
     if decision.verdict != "consistent" and not inputs.request.quick:
         held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
         findings = findings.model_copy(update={"gain": held})
-    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0].read)
+    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0])
     quality = findings.data_quality.model_copy(update={"as_filed": {} if logs.healthy else off})
     update = {"rows": rows, "pictures": drawn, "data_quality": quality} | _impacts(known, asked, told, logs.logs)
     return replace(told, findings=with_words(findings.model_copy(update=update)))
@@ -273,12 +269,14 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 
 
 def _pictures(
-    known: Fleet, asked: Question, decision: Decision, spans: Logged, read: Sequence[Sensor]
+    known: Fleet, asked: Question, decision: Decision, spans: Logged, log: Log
 ) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
     """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
-    own = known.filter
+    own, read = known.filter, log.read
     past, now = known.past, asked.windows
-    by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
+    begin = now.time.min() if log.dated else past.time.max(initial=0.0) + LATER
+    when = np.r_[past.time - begin, now.time - now.time.min()]
+    by_time = np.argsort(when, kind="stable")
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:
         """Measured less simulated, free-running: means of the windows (n, reads)."""
@@ -298,8 +296,8 @@ def _pictures(
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]
         values = [array(channels.in_unit(s, line)) for line in lines]
         shown[s.name] = Rows.Values(measured=values[0], nominal=values[1], extended=values[2] if together else ())
-    days = (np.sort(np.r_[past.time, now.time]) - now.time.min()) / DAY
-    time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(days))
+    label = "time since the first log in question"
+    time = Rows.Quantity(label=label, unit="d", values=array(when[by_time] / DAY))
     found = []
     for cause, e in after.items():
         whole_of = np.maximum(np.nansum(before**2 + own.read_sd**2, axis=0), own.read_sd**2)
@@ -309,7 +307,7 @@ def _pictures(
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     errors = zip(read, of_readings(np.mean, before).tolist(), strict=True)
     off = {s.name: e for s, e in errors if s.kind.endswith("_temp") and is_apart(e, s.offset_sd)}
-    return Rows(row=tuple(range(1, len(days) + 1)), channels=shown, quantities={"time": time}), tuple(found), off
+    return Rows(row=tuple(range(1, len(when) + 1)), channels=shown, quantities={"time": time}), tuple(found), off
 
 
 def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[Log]) -> dict[str, Any]:

@@ -20,11 +20,11 @@ from gearheat.scenarios.measured.nominal import drive_by
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.times import NUMBERS
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.diagnose.infer.logs import filter_of
+from gearheat.tools.diagnose.infer.logs import filter_of, fleet, question
 from gearheat.tools.diagnose.infer.walk import curves, independent
 from gearheat.tools.diagnose.library.knobs import knobs
 from gearheat.tools.diagnose.model.logs import Passed, log_likelihood
-from gearheat.tools.diagnose.model.windows import windows
+from gearheat.tools.diagnose.model.windows import Duty, windows
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.watch.judge import Judge
 
@@ -112,6 +112,41 @@ def test_a_log_of_few_samples_leaves_nothing_free(tmp_path: Path) -> None:
     path.write_text("".join(path.read_text().splitlines(keepends=True)[:9]))
     found = gh.diagnose(None, "helical_two_stage", logs=path, quick=True)
     assert found.verdict == "consistent" and found.test.p_adequacy is None
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_log_that_reads_nothing_behind_its_first_samples_is_refused(tmp_path: Path) -> None:
+    now = record(tmp_path / "now.csv", load("helical_two_stage"), 1)
+    blanked(now, "T_oil_C", "T_wall_C", rows=slice(12, N))
+    with pytest.raises(DataError, match=r"now\.csv: nothing is read behind the first samples"):
+        gh.diagnose(None, "helical_two_stage", logs=now, quick=True)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_thermometer_of_a_few_samples_has_no_usual_value(tmp_path: Path) -> None:
+    log = read(blanked(record(tmp_path / "log.csv", s := load("planetary"), 1), "T_oil_C", rows=slice(12, N)), s)
+    data = windows([log], [x.name for x in log.given], [x.name for x in log.read])
+    assert np.isfinite(Duty.of(data, log.given, log.read).at(data)).all()
+
+
+def test_what_is_shown_without_healthy_logs_is_of_the_filter_that_suits_them(tmp_path: Path, monkeypatch) -> None:
+    def suited(own, *_) -> None:
+        own.moments, own.parts = True, 2
+
+    monkeypatch.setattr("gearheat.tools.diagnose.infer.logs.suit", suited)
+    log = read(record(tmp_path / "log.csv", scenario := load("planetary"), 1, "T_oil"), scenario)
+    known = fleet(scenario, (), (), log)
+    question(known, [log])
+    assert known.filter.moments and known.filter.parts == 2
+
+
+def test_healthy_logs_without_dates_are_drawn_before_those_in_question(tmp_path: Path) -> None:
+    now, past = (record(tmp_path / f"{k}.csv", load("helical_two_stage"), k, "T_oil") for k in (1, 2))
+    days = np.array(
+        gh.diagnose(None, "helical_two_stage", logs=now, reference_logs=past).rows.quantities["time"].values
+    )
+    assert (days < 0).sum() == (days >= 0).sum() == len(days) / 2
+    assert days[days >= 0].min() == 0 and days[days < 0].max() == pytest.approx(-14.0, abs=0.5)
 
 
 @pytest.mark.filterwarnings("error")

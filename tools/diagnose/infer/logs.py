@@ -182,7 +182,6 @@ def fleet(
     machine = np.array([0] * len(reference) + [1 + i for i in range(len(siblings))])[past.machine]
     each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
     keys, season = np.unique(each, axis=0, return_inverse=True)
-    machine_of = keys[:, 0]
     suit(own, past, np.zeros((len(machine), len(sd))))
     bent, there = curves(own, past), duty.at(past)
     places = Places(machine, there, np.zeros((len(machine), len(sd))), bent)
@@ -191,9 +190,8 @@ def fleet(
     told = places.told(passed, z).times(share)
     logs_of = [evidence_of(told, there, machine, one) for one in tried]
     begun = next(one for one, log in zip(tried, logs_of, strict=True) if log > max(logs_of) - REFUTED)
-    levels = estimate(told, there, season, machine_of, begun)
-    times = [float(past.time[season == n].mean()) for n in range(len(keys))]
-    seasons = {(int(one), int(number)): (n, times[n]) for n, (one, number) in enumerate(keys)}
+    levels = estimate(told, there, season, keys[:, 0], begun)
+    seasons = {(int(m), int(q)): (n, float(past.time[season == n].mean())) for n, (m, q) in enumerate(keys)}
     return Fleet(own, past.some(machine == 0), levels, share, length, bent, duty, seasons)
 
 
@@ -218,13 +216,13 @@ class Question:
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
     """What the logs in question say of the knobs, told where each season has moved to; progress as of `fleet`."""
-    own, levels, k = copy(found.filter), found.levels, len(found.filter.knobs)
-    data = windows(logs, own.given, own.read, found.length)
+    levels, k = found.levels, len(found.filter.knobs)
+    data = windows(logs, found.filter.given, found.filter.read, found.length)
     there, season = np.unique(season_of(data.time, all(log.dated for log in logs)), return_inverse=True)
     season = season * min(SEASONS, len(there)) // len(there)
-    if not found.share:
-        suit(own, data, np.zeros((len(season), k)))
-    span = _spans(data.time, season)
+    if not found.share:  # what is shown later is of this filter, too
+        suit(found.filter, data, np.zeros((len(season), k)))
+    own, span = copy(found.filter), _spans(data.time, season)
     changed = np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
     wide = levels.covariance[0, :k, :k] + levels.season[:k, :k] + changed
     if found.share:

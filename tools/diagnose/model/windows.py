@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from scipy.signal import lfilter
 
+from ....model.errors import DataError
 from ....scenarios.measured.logs import Log
 from ....scenarios.measured.table import Sensor
 
@@ -90,7 +91,7 @@ class Duty:
         loads = [i for i, s in enumerate(given) if s.kind != "ambient"]
         warm = next((i for i, s in enumerate(read) if s.kind.endswith("_temp")), 0)
         own = cls(loads, warm, np.zeros(len(loads) + 2))
-        return replace(own, usual=np.nanmean(own._means(data), axis=0))
+        return replace(own, usual=of_readings(np.mean, own._means(data)))
 
     def _means(self, data: Windows) -> np.ndarray:
         warm = data.read[:, :, [self.warm]]
@@ -130,6 +131,9 @@ def windows(
                 y[i, :m, j] = log.values[name][rows] * signs[name]
                 slow[i, :m, j] = courses[number][name][rows] * signs[name]
         there[i, :m], counts[i, skipped:m], at[i, :m] = True, True, rows
+    if not (counts[:, :, None] & np.isfinite(y)).any():
+        names = ", ".join(log.name for log in logs)
+        raise DataError(f"{names}: nothing is read behind the first samples of a stretch. Give longer stretches.")
     time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in parts])
     return Windows(u, y, there, counts, slow, np.array([k for k, *_ in parts]), time, at, logs[0].step)
 
