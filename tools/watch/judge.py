@@ -73,7 +73,7 @@ class Judge:
         return healthy.of(of), formulas
 
     def answer(self, machine: str, kind: str, times: Sequence[float], rows: Sequence[Cells]) -> dict[str, Any]:
-        """What samples say: temperatures of their last window, and what has changed; as `log`."""
+        """What samples say: what is read in their last window, and what has changed; as `log`."""
         log = self.log(machine, kind, times, rows)
         if log.lines[-1] <= len(rows):  # of the last samples it is not known what drove the rig
             raise DataError(log.warnings[-1:])
@@ -85,7 +85,8 @@ class Judge:
         found = judged(self.inputs, known, asked, data, formulas=formulas)
         last = expect(known, asked.windows.some(np.array([asked.windows.time.argmax()])))
         temperatures = {}
-        for j, s in enumerate(log.read):
+        for j in np.flatnonzero(np.isfinite(last.measured)):
+            s = log.read[j]
             values = {"measured": last.measured[j], "predicted": last.predicted[j]}
             values |= {"low": last.predicted[j] - BAND * last.sd[j], "high": last.predicted[j] + BAND * last.sd[j]}
             temperatures[s.name] = {key: round(float(channels.in_unit(s, v)), 3) for key, v in values.items()}

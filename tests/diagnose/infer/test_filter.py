@@ -129,6 +129,19 @@ def test_a_thermometer_of_a_few_samples_has_no_usual_value(tmp_path: Path) -> No
     assert np.isfinite(Duty.of(data, log.given, log.read).at(data)).all()
 
 
+def test_a_watch_goes_on_without_a_thermometer(tmp_path: Path) -> None:
+    now = blanked(record(tmp_path / "now.csv", load("planetary"), 1, "T_oil", "T_wall"), "T_oil_C", rows=slice(230, N))
+    told = [set(event["readings"]) for event in gh.watch("planetary", now, once=True) if event["event"] == "window"]
+    assert told == [{"T_oil", "T_wall"}, {"T_wall"}]
+
+
+def test_a_torque_is_no_temperature_of_the_duty(own_unit: Path, tmp_path: Path) -> None:
+    log = read(record(tmp_path / "log.csv", scenario := load(own_unit), 1, "T_input"), scenario)
+    data = windows([log], [s.name for s in log.given], ["T_input"])
+    duty = Duty.of(data, log.given, log.read)
+    assert len(duty.usual) == 2 and duty.at(data).shape == (len(data.time), 3)
+
+
 def test_what_is_shown_without_healthy_logs_is_of_the_filter_that_suits_them(tmp_path: Path, monkeypatch) -> None:
     def suited(own, *_) -> None:
         own.moments, own.parts = True, 2

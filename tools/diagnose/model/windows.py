@@ -77,30 +77,30 @@ class Duty:
 
     Args:
         loads: numbers of the inputs
-        warm: number of the reading
+        warm: number of the reading of that temperature, none where no thermometer is read
         usual: means of each, the temperature and how far it has risen in the last hours at the end (d,)
     """
 
     loads: Sequence[int]
-    warm: int
+    warm: Sequence[int]
     usual: np.ndarray
 
     @classmethod
     def of(cls, data: Windows, given: Sequence[Sensor], read: Sequence[Sensor]) -> Duty:
         """That of windows of logs with some sensors."""
         loads = [i for i, s in enumerate(given) if s.kind != "ambient"]
-        warm = next((i for i, s in enumerate(read) if s.kind.endswith("_temp")), 0)
-        own = cls(loads, warm, np.zeros(len(loads) + 2))
+        warm = [i for i, s in enumerate(read) if s.kind.endswith("_temp")][:1]
+        own = cls(loads, warm, np.zeros(len(loads) + 2 * len(warm)))
         return replace(own, usual=of_readings(np.mean, own._means(data)))
 
     def _means(self, data: Windows) -> np.ndarray:
-        warm = data.read[:, :, [self.warm]]
-        own = np.concatenate([np.abs(data.given[:, :, self.loads]), warm, warm - data.slow[:, :, [self.warm]]], axis=2)
+        warm = data.read[:, :, self.warm]
+        own = np.concatenate([np.abs(data.given[:, :, self.loads]), warm, warm - data.slow[:, :, self.warm]], axis=2)
         return means(np.where(data.counts[:, :, None], own, np.nan))
 
     def at(self, data: Windows) -> np.ndarray:
         """One, and how far means of windows lie from the usual ones, of loads by half of these (N, 1 + d)."""
-        unit = np.r_[np.maximum(self.usual[:-2] / 2, 1e-9), WARMER, WARMER]
+        unit = np.where(np.arange(len(self.usual)) < len(self.loads), np.maximum(self.usual / 2, 1e-9), WARMER)
         far = (self._means(data) - self.usual) / unit
         return np.column_stack([np.ones(len(far)), np.where(np.isfinite(far), far, 0.0)])
 
