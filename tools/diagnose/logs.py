@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -28,7 +28,7 @@ from .model.formula import Formula
 from .model.logged import Logged
 from .model.windows import Windows, means, of_readings, windows
 from .report.words import with_words
-from .request import Inputs
+from .request import Inputs, Request
 from .setting import Setting
 
 #: A day [s].
@@ -85,9 +85,18 @@ def read_logs(inputs: Inputs) -> Logs:
         found = [problems.of(partial(read_log, path, inputs.scenario, inputs.card)) for path in paths]
         return tuple(log for log in found if log is not None)
 
-    data = Logs(*(read(p) for p in (request.logs, request.reference_logs, request.sibling_logs)))
+    logs, reference, siblings = (read(p) for p in (request.logs, request.reference_logs, request.sibling_logs))
     problems.check(DataError)
-    return data
+    return Logs(_in_turn(logs), _in_turn(reference), siblings)
+
+
+def _in_turn(logs: Sequence[Log]) -> tuple[Log, ...]:
+    """Logs of one machine: without dates each begins behind the one before."""
+    found = list(logs[:1])
+    for log in logs[1:]:
+        late = max(found[-1].time[-1] + log.step - log.time[0], 0.0)
+        found.append(log if log.dated else replace(log, time=log.time + late))
+    return tuple(found)
 
 
 def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
@@ -98,13 +107,9 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     """
     data = read_logs(inputs)
     check(data)
+    length = window_length(data.logs)
     known = fleet(
-        inputs.scenario,
-        data.reference,
-        data.siblings,
-        data.logs[0],
-        lambda stage, p: progress(stage, 0.02 + 0.4 * p),
-        window_length(data.logs),
+        inputs.scenario, data.reference, data.siblings, data.logs[0], lambda t, p: progress(t, 0.02 + 0.4 * p), length
     ).going_on(data.logs)
     asked = question(known, data.logs, lambda stage, p: progress(stage, 0.42 + 0.2 * p))
     return composed(inputs, known, asked, data, progress)
@@ -149,11 +154,10 @@ def composed(
 ) -> LogDiagnosis:
     """The whole answer; as `judged`."""
     told = judged(inputs, known, asked, logs, progress)
-    found, decision, findings, spans = told.found, told.decision, told.findings, told.spans
-    if decision.verdict != "consistent" and not inputs.request.quick:
-        held = _gain(known, asked, found, spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))
-        findings = findings.model_copy(update={"gain": held})
-    rows, drawn, off = _pictures(known, asked, decision, spans, logs.logs[0])
+    findings = told.findings
+    if findings.verdict != "consistent" and not inputs.request.quick and told.spans.campaign.n > 1:
+        findings = findings.model_copy(update={"gain": _gain(known, asked, told, inputs.request, progress)})
+    rows, drawn, off = _pictures(known, asked, told, logs.logs[0])
     quality = findings.data_quality.model_copy(update={"as_filed": {} if logs.healthy else off})
     update = {"rows": rows, "pictures": drawn, "data_quality": quality} | _impacts(known, asked, told, logs.logs)
     return replace(told, findings=with_words(findings.model_copy(update=update)))
@@ -194,8 +198,7 @@ def check(data: Logs) -> None:
     for log in (*data.logs[1:], *data.healthy):
         if abs(log.step - first.step) > 1e-6 * first.step:
             problems.append(f"{log.name}: samples every {log.step:g} s, {first.name} every {first.step:g} s. Resample.")
-        missing = {s.name for s in first.sensors} - {s.name for s in log.sensors}
-        if missing:
+        if missing := {s.name for s in first.sensors} - {s.name for s in log.sensors}:
             problems.append(f"{log.name}: has no column for {', '.join(sorted(missing))}, which {first.name} has.")
         if log.dated != first.dated:
             kind = "dates" if log.dated else "seconds"
@@ -208,8 +211,10 @@ def _warnings(data: Logs) -> Iterator[str]:
     given = {"--reference-logs": data.reference, "--sibling-logs": data.siblings}
     if lacks := " and ".join(name for name, logs in given.items() if not logs):
         yield f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
-    if data.reference and not data.logs[0].dated:
-        yield "the logs have no dates: those in question count as two weeks after the reference. Give dates if not"
+    several = ", one behind the other" if len(data.logs) > 1 else ""
+    if (data.reference or several) and not data.logs[0].dated:
+        begin = " two weeks after the reference" if data.reference else ""
+        yield f"the logs have no dates: those in question count as{begin}{several}. Give dates if not"
     for log in data.logs:
         yield from log.warnings
 
@@ -230,19 +235,21 @@ def _gross(logs: Sequence[Log]) -> list[GrossReading]:
     ]
 
 
-def _gain(known: Fleet, asked: Question, found: Found, spans: Logged, progress: Callable[[float], None]) -> f.Gain:
+def _gain(known: Fleet, asked: Question, told: LogDiagnosis, request: Request, progress: Progress) -> f.Gain:
     """Free-running error of spans of the logs, with the causes that are found without them."""
-    own, data, read = known.filter, asked.windows, spans.read
+    own, data, spans, found = known.filter, asked.windows, told.spans, told.found
+    options = Options(request.alpha, request.seed, request.causes, critical=found.critical)
+    read, folds = spans.read, min(FOLDS, spans.campaign.n)
     before = known.usual(data)
     after, chosen = before.copy(), Counter[str]()
-    for k in range(FOLDS):
-        rows = np.arange(k, spans.campaign.n, FOLDS)
+    for k in range(folds):
+        rows = np.arange(k, spans.campaign.n, folds)
         aside = frozenset(Aside(int(i)) for i in np.flatnonzero(np.isin(spans.row, rows)))
-        kept = weigh(found.problem.without(aside), found.formulas, Options(critical=found.critical)).hypotheses[0]
+        kept = weigh(found.problem.without(aside), found.formulas, options).hypotheses[0]
         chosen.update(kept.causes)
         held = np.isin(asked.span, rows)
         after[held] += _moves(spans, kept)[asked.span[held]]
-        progress((k + 1) / FOLDS)
+        progress("spans left out", 0.82 + 0.16 * (k + 1) / folds)
     errors = [own.run(data, z, slopes=False).error for z in (before, after)]
     counted = np.isfinite(errors[0]).sum(axis=(0, 1))
     j = min(np.flatnonzero(counted), key=lambda k: read[k].kind != "oil_temp")  # of the oil, where it is read
@@ -259,7 +266,7 @@ def _gain(known: Fleet, asked: Question, found: Found, spans: Logged, progress: 
         before=sides[0],
         after=sides[1],
         chosen=dict(chosen.most_common()),
-        folds=FOLDS,
+        folds=folds,
     )
 
 
@@ -269,10 +276,10 @@ def _moves(spans: Logged, h: Hypothesis, *only: str) -> np.ndarray:
 
 
 def _pictures(
-    known: Fleet, asked: Question, decision: Decision, spans: Logged, log: Log
+    known: Fleet, asked: Question, told: LogDiagnosis, log: Log
 ) -> tuple[Rows, tuple[Picture, ...], dict[str, float]]:
     """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
-    own, read = known.filter, log.read
+    own, read, leader, spans = known.filter, log.read, told.decision.leader, told.spans
     past, now = known.past, asked.windows
     begin = now.time.min() if log.dated else past.time.max(initial=0.0) + LATER
     when = np.r_[past.time - begin, now.time - now.time.min()]
@@ -287,9 +294,8 @@ def _pictures(
         return np.asarray(np.concatenate([healthy, part])[by_time].T)
 
     healthy, before = (left(data, np.zeros((len(data.time), len(own.knobs)))) for data in (past, now))
-    causes = decision.leader.causes
-    after = {cause: left(now, _moves(spans, decision.leader, cause)[asked.span]) for cause in causes}
-    together = [left(now, _moves(spans, decision.leader)[asked.span])] if causes else []
+    after = {cause: left(now, _moves(spans, leader, cause)[asked.span]) for cause in leader.causes}
+    together = [left(now, _moves(spans, leader)[asked.span])] if leader.causes else []
     measured = np.concatenate([means(np.where(d.counts[:, :, None], d.read, np.nan)) for d in (past, now)])[by_time].T
     shown = {}
     for j, s in enumerate(read):

@@ -22,7 +22,9 @@ from gearheat.scenarios.measured.times import NUMBERS
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.diagnose.infer.logs import filter_of, fleet, question
 from gearheat.tools.diagnose.infer.walk import curves, independent
+from gearheat.tools.diagnose.infer.weigh import weigh
 from gearheat.tools.diagnose.library.knobs import knobs
+from gearheat.tools.diagnose.logs import read_logs
 from gearheat.tools.diagnose.model.logs import Passed, log_likelihood
 from gearheat.tools.diagnose.model.windows import Duty, windows
 from gearheat.tools.diagnose.request import Inputs, Request
@@ -30,6 +32,8 @@ from gearheat.tools.watch.judge import Judge
 
 #: Nothing differs.
 NONE: Mapping[str, float] = {}
+#: Seeds of a healthy log and of one of a housing that is heated from outside.
+HOT: Mapping[int, Mapping[str, float]] = {1: NONE, 2: {"wall.Q_flow_external": 400.0}}
 #: Samples, and time between them [s].
 N, STEP = 720, 600.0
 
@@ -83,7 +87,7 @@ def test_bodies_begin_at_what_thermometers_show(tmp_path: Path) -> None:
     log = read(record(tmp_path / "log.csv", scenario, 1, "T_oil", "T_oil2", "T_sun"), scenario)
     own = filter_of(scenario, log)
     data = windows([log], own.given, own.read)
-    begun, _ = own.start(data, np.zeros((len(data.read), len(own.read))))
+    begun, *_ = own.start(data, np.zeros((len(data.read), len(own.read))))
     thermometers = data.read[:, 0, [own.read.index(name) for name in ("T_oil", "T_oil2")]]
     assert begun == pytest.approx(
         np.repeat(thermometers.mean(axis=1)[:, None], len(own.plant.flat.states), axis=1), abs=1.5
@@ -390,3 +394,44 @@ def test_what_scatters_by_much_counts(own_unit: Path, tmp_path: Path) -> None:
     assert told == pytest.approx(
         float((shown.sum(axis=1) / data.counts.sum(axis=1)) ** 2 @ pieces / (3 * 40) ** 2), rel=0.5
     )
+
+
+def test_a_lone_sample_says_of_its_thermometer_what_the_likelihood_says(tmp_path: Path) -> None:
+    """The states begin at what is read, whatever its offset, which a sample between two holes seemed to tell."""
+    log = read(record(tmp_path / "log.csv", scenario := load("helical_two_stage"), 1), scenario)
+    log = replace(log.rows(np.arange(N) < 60), stretch=np.arange(60))
+    own = filter_of(scenario, log)
+    data, k = windows([log], own.given, own.read), [knob.name for knob in own.knobs].index("T_oil: offset")
+    at = np.zeros((60, len(own.knobs)))
+    step = 1e-3 * np.eye(len(own.knobs))[k]
+    ends = [log_likelihood(own.run(data, at + side * step, slopes=False)) for side in (1, -1)]
+    assert own.run(data, at).slope[:, k].sum() == pytest.approx((ends[0] - ends[1]) / 2e-3, rel=0.02)
+
+
+def test_logs_without_dates_follow_one_another(tmp_path: Path) -> None:
+    """Samples of several, which all begin at nought, were one span of time."""
+    scenario = load("planetary")
+    paths = tuple(record(tmp_path / f"{k}.csv", scenario, k, "T_oil") for k in (1, 2))
+    request = Request("planetary", logs=paths, reference_logs=paths[::-1], sibling_logs=paths)
+    found = read_logs(Inputs(request, scenario, Card(), None, None, None))
+    for logs in (found.logs, found.reference):
+        assert np.concatenate([log.time for log in logs]).tolist() == (STEP * np.arange(2 * N)).tolist()
+    assert [log.time[0] for log in found.siblings] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("rows", "folds"), [(100, 2), (30, 0)])
+def test_folds_of_logs_are_as_many_as_spans_and_look_for_as_many_causes(
+    rows: int, folds: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    past, now = (record(tmp_path / f"{k}.csv", load("planetary"), k, "T_oil", changed=ch) for k, ch in HOT.items())
+    now.write_text("\n".join(now.read_text().splitlines()[: rows + 1]) + "\n")
+    asked: list[int] = []
+
+    def weighed(problem, formulas, options, *more):
+        asked.append(options.most)
+        return weigh(problem, formulas, options, *more)
+
+    monkeypatch.setattr("gearheat.tools.diagnose.logs.weigh", weighed)
+    found = gh.diagnose(None, "planetary", logs=now, reference_logs=past, causes=1)
+    assert found.verdict != "consistent" and asked == [1] * (1 + folds)
+    assert (found.gain.folds if found.gain else 0) == folds

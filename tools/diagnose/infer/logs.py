@@ -144,8 +144,7 @@ def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
     """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
     if not dated:
         return np.asarray(np.floor((time - time.min()) / (YEAR / 4)), dtype=int)
-    dates = [datetime.fromtimestamp(t, UTC) for t in time]
-    return np.array([4 * d.year + (d.month - 1) // 3 for d in dates])
+    return np.array([4 * (d := datetime.fromtimestamp(t, UTC)).year + (d.month - 1) // 3 for t in time])
 
 
 def fleet(

@@ -17,7 +17,8 @@ typedef struct {
   const double *u, *noise;                   /* (nu); standard deviation of the given inputs (given) */
   const whole *input_of, *gain;              /* input that a knob moves or -1, and whether it moves by a factor (k) */
   const whole *u_at, *state_of;              /* place of each given input (given); state of each reading or -1 (shown) */
-  const double *x0, *z0, *P0, *Q, *scatter;  /* (n, nx), (nz), diagonals (nx), (nx); standard deviations (shown) */
+  const double *x0, *z0, *P0, *S0;           /* (n, nx), (nz), diagonal (nx), of x0 by the knobs (n, k, nx) */
+  const double *Q, *scatter;                 /* diagonal (nx), standard deviations (shown) */
   const double *spread;                      /* standard deviations of means over pieces (shown) */
   const double *step, *tails;                /* [s]; degrees of freedom of the errors */
 } Logs;
@@ -333,7 +334,7 @@ static void log_begun(Follow *F, whole from, whole to) {
   across(F->offset, D->offset, from, to, F->reads), across(F->w[0], D->x0, from, to, F->nx);
   for (whole i = 0; i < P->nu; i++) R->u[i] = lanes_all(D->u[i]);
   for (whole i = F->nx; i < F->nw; i++) F->w[0][i] = lanes_all(D->z0[i - F->nx]);
-  memset(F->P, 0, F->nx * F->nx * sizeof(lanes)), memset(F->S, 0, F->nx * D->k * sizeof(lanes));
+  memset(F->P, 0, F->nx * F->nx * sizeof(lanes)), across(F->S, D->S0, from, to, F->nx * D->k);
   for (whole i = 0; i < F->nx; i++) F->P[i * F->nx + i] = lanes_all(D->P0[i]);
   memset(F->many, 0, F->reads * sizeof(lanes)), memset(F->sum, 0, F->reads * sizeof(lanes));
   memset(F->sum_by, 0, F->reads * D->k * sizeof(lanes));

@@ -17,7 +17,7 @@ from ....fmu.batch_library import share_rows
 from ....scenarios.measured.table import Sensor
 from ..library.knobs import Knob
 from .plant import Plant, library, record
-from .windows import Windows, by_piece, means
+from .windows import Windows, by_piece
 
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
@@ -161,20 +161,21 @@ class Filter:
         (factor, scaled), (shift, offset) = (np.split(both, [g], axis=1) for both in (gain, moved))
         return {"p": p, "dp": dp, "factor": factor, "shift": shift, "scaled": scaled, "offset": offset, "by": by[g:]}
 
-    def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """States at the start (N, nx), and their standard deviations (nx,)."""
-        x = np.tile(self.plant.flat.starts("state"), (len(data.read), 1))
-        thermal = np.array([q.unit == "K" for q in self.plant.flat.states])
-        bodies = np.array([q.name in self.plant.flat.bodies for q in self.plant.flat.states])
-        first = _first(data.read) - offset
-        if (read := self.state_of >= 0).any():
-            x[:, bodies] = np.where(np.isfinite(usual := means(first[:, read, None])), usual, x[:, bodies])
-        sd = np.where(thermal, UNREAD, 0.0)
+    def start(self, data: Windows, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """States at the start (N, nx), weights of the readings in them (N, nx, reads), standard deviations (nx,)."""
+        known, states = np.isfinite(data.read), self.plant.flat.states
+        first = np.take_along_axis(data.read, known.argmax(axis=1)[:, None], axis=1)[:, 0] - offset
+        there = np.isfinite(first) & (self.state_of >= 0)
+        weights = np.zeros((len(first), len(states), len(self.read)))
+        bodies = [q.name in self.plant.flat.bodies for q in states]
+        weights[:, bodies] = (there / np.maximum(there.sum(axis=1, keepdims=True), 1))[:, None]
+        sd = np.array([UNREAD if q.unit == "K" else 0.0 for q in states])
         for j, state in enumerate(self.state_of):
             if state >= 0:
-                x[:, state] = np.where(np.isfinite(first[:, j]), first[:, j], x[:, state])
+                weights[there[:, j], state] = np.arange(len(self.read)) == j
                 sd[state] = self.settling[j]
-        return x, sd
+        x = (weights @ np.nan_to_num(first)[:, :, None])[:, :, 0]
+        return np.where(weights.any(axis=2), x, self.plant.flat.starts("state")), weights, sd
 
     def run(
         self,
@@ -196,7 +197,8 @@ class Filter:
         (n, length, _), k = data.read.shape, z.shape[1] if slopes else 0
         known = self.settings(z[order])
         known |= {"dp": known["dp"][:, :, :k], "by": known["by"][:, :k]}
-        x, sd = self.start(data, known["offset"])
+        x, weights, sd = self.start(data, known["offset"])
+        gain = np.array([o.gain for o in self.knobs], dtype=np.int64)
         lengths, piece = data.there.sum(axis=1), data.piece
         logs = record(
             n=n,
@@ -212,12 +214,13 @@ class Filter:
             u=self.plant.u,
             noise=self.given_sd,
             input_of=np.array([self.given.index(o.sensor) if o.sensor in self.given else -1 for o in self.knobs]),
-            gain=np.array([o.gain for o in self.knobs], dtype=np.int64),
+            gain=gain,
             u_at=np.array([self.plant.u_place[path] for path in self.plant.given]),
             state_of=self.state_of,
             x0=x,
             z0=self.plant.flat.starts("algebraic"),
             P0=sd**2,
+            S0=-np.einsum("nsr,rk->nks", weights, known["by"] * (1 - gain[:k])),
             Q=self.noise**2,
             scatter=self.settling,
             spread=self.scatter,
@@ -228,11 +231,7 @@ class Filter:
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
-
-            def followed(begin: int, end: int, at: int = first) -> int:
-                return int(run(*places, at + begin, at + end))
-
-            share_rows(followed, last - first, SIDE, 0)
+            share_rows(lambda begin, end, at=first: int(run(*places, at + begin, at + end)), last - first, SIDE, 0)
             if progress:
                 progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"] = by_piece(piece, data.read - found["shown"])
@@ -244,10 +243,3 @@ def log_likelihood(passed: Passed) -> float:
     """Of the prediction errors, with heavy tails."""
     far = passed.error**2 / (TAILS * passed.variance)
     return float(-np.nansum((TAILS + 1) / 2 * np.log1p(far) + np.log(passed.variance) / 2))
-
-
-def _first(read: np.ndarray) -> np.ndarray:
-    """First reading of each sensor in each window (N, reads)."""
-    there = np.isfinite(read)
-    at = there.argmax(axis=1)
-    return np.asarray(np.take_along_axis(read, at[:, None], axis=1)[:, 0])
