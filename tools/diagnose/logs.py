@@ -300,7 +300,7 @@ def _pictures(
     shown = {}
     for j, s in enumerate(read):
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]
-        values = [array(channels.in_unit(s, line)) for line in lines]
+        values = [array(channels.in_unit(s, s.signs[0] * line)) for line in lines]
         shown[s.name] = Rows.Values(measured=values[0], nominal=values[1], extended=values[2] if together else ())
     label = "time since the first log in question"
     time = Rows.Quantity(label=label, unit="d", values=array(when[by_time] / DAY))
@@ -309,7 +309,8 @@ def _pictures(
         whole_of = np.maximum(np.nansum(before**2 + own.read_sd**2, axis=0), own.read_sd**2)
         share = np.nansum(before**2 - e**2, axis=0) / whole_of
         best = int(np.argmax(share))  # where most of what is more than noise is taken away
-        sides = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
+        unit = channels.difference(read[best], read[best].signs[0])
+        sides = [array(unit * whole(part)[best]) for part in (before, e)]
         found.append(Picture(cause=cause, channel=read[best].name, quantity="time", before=sides[0], after=sides[1]))
     errors = zip(read, of_readings(np.mean, before).tolist(), strict=True)
     off = {s.name: e for s, e in errors if s.kind.endswith("_temp") and is_apart(e, s.offset_sd)}
@@ -335,7 +336,8 @@ def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[L
         moves = _moves(told.spans, leader, cause)
         far = np.abs(moves).sum(axis=1)
         share = far[asked.span].mean() / far.max()
-        changes[cause] = share * np.nanmean(shown(moves[far.argmax()]) - sound, axis=(0, 1))
+        mean = np.nanmean(shown(moves[far.argmax()]) - sound, axis=(0, 1))
+        changes[cause] = share * mean * [s.signs[0] for s in read]
     each = {c: impacts_of(told.found.problem, leader, read, {c: changed}) for c, changed in changes.items()}
     causes = (c.model_copy(update={"impact": each.get(c.id, {})}) for c in told.findings.causes)
     return {"causes": tuple(causes), "impact": impacts_of(told.found.problem, leader, read, changes)}

@@ -87,8 +87,9 @@ class Judge:
         temperatures = {}
         for j in np.flatnonzero(np.isfinite(last.measured)):
             s = log.read[j]
-            values = {"measured": last.measured[j], "predicted": last.predicted[j]}
-            values |= {"low": last.predicted[j] - BAND * last.sd[j], "high": last.predicted[j] + BAND * last.sd[j]}
+            measured, predicted = (s.signs[0] * means[j] for means in (last.measured, last.predicted))
+            values = {"measured": measured, "predicted": predicted}
+            values |= {"low": predicted - BAND * last.sd[j], "high": predicted + BAND * last.sd[j]}
             temperatures[s.name] = {key: round(float(channels.in_unit(s, v)), 3) for key, v in values.items()}
         changed = 1 - found.findings.nothing
         causes = [_named(c) for c in found.findings.causes if c.probability > NAMED]

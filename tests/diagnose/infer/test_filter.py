@@ -32,7 +32,8 @@ from gearheat.tools.watch.judge import Judge
 
 #: Nothing differs.
 NONE: Mapping[str, float] = {}
-#: Seeds of a healthy log and of one of a housing that is heated from outside.
+#: Seeds of a healthy log, and of one of a bearing that binds, of a housing that is heated from outside.
+BOUND: Mapping[int, Mapping[str, float]] = {1: NONE, 2: {"carrier_bearing.k_loss": 6.0}}
 HOT: Mapping[int, Mapping[str, float]] = {1: NONE, 2: {"wall.Q_flow_external": 400.0}}
 #: Samples, and time between them [s].
 N, STEP = 720, 600.0
@@ -144,6 +145,20 @@ def test_a_torque_is_no_temperature_of_the_duty(own_unit: Path, tmp_path: Path) 
     data = windows([log], [s.name for s in log.given], ["T_input"])
     duty = Duty.of(data, log.given, log.read)
     assert len(duty.usual) == 2 and duty.at(data).shape == (len(data.time), 3)
+
+
+def test_a_torque_is_told_with_the_sign_of_its_column(tmp_path: Path) -> None:
+    """That of the sun is a magnitude, and below zero to the model; more friction leaves less of it."""
+    scenario = load("planetary")
+    past, now = (record(tmp_path / f"{k}.csv", scenario, k, "T_oil", "T_sun", changed=ch) for k, ch in BOUND.items())
+    found = gh.diagnose(None, "planetary", logs=now, reference_logs=past, quick=True)
+    shown = found.rows.channels["T_sun"]
+    assert min(v for v in (*shown.measured, *shown.nominal, *shown.extended) if v is not None) > 400
+    assert found.impact["T_oil_K"].value > 0 > found.impact["T_sun_Nm"].value
+    now.write_text("\n".join(now.read_text().splitlines()[:61]) + "\n")
+    told = next(e for e in gh.watch("planetary", now, once=True, every=60) if e["event"] == "window")
+    sun = told["readings"]["T_sun"]
+    assert 400 < sun["low"] < sun["predicted"] < sun["high"] and sun["measured"] > 400
 
 
 def test_what_is_shown_without_healthy_logs_is_of_the_filter_that_suits_them(tmp_path: Path, monkeypatch) -> None:
