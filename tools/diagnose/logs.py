@@ -33,6 +33,8 @@ from .setting import Setting
 
 #: A day [s].
 DAY = 86400.0
+#: Time in which what a cause changes has come about [s].
+WARM = 3 * DAY
 #: p of what is left, at most: samples count for less than they may, so that it is smaller than expected.
 QUIET = 0.98
 #: Parts of the spans that are left out in turn.
@@ -194,17 +196,16 @@ def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, d
 
 def check(data: Logs) -> None:
     """Logs go together: the same step, sensors and kind of time."""
-    first, problems = data.logs[0], []
+    first, problems = data.logs[0], Problems()
     for log in (*data.logs[1:], *data.healthy):
         if abs(log.step - first.step) > 1e-6 * first.step:
             problems.append(f"{log.name}: samples every {log.step:g} s, {first.name} every {first.step:g} s. Resample.")
         if missing := {s.name for s in first.sensors} - {s.name for s in log.sensors}:
             problems.append(f"{log.name}: has no column for {', '.join(sorted(missing))}, which {first.name} has.")
         if log.dated != first.dated:
-            kind = "dates" if log.dated else "seconds"
-            problems.append(f"{log.name}: has {kind}, {first.name} has not. Make them alike.")
-    if problems:
-        raise DataError(problems)
+            said = "dates" if log.dated else "seconds"
+            problems.append(f"{log.name}: has {said}, {first.name} has not. Make them alike.")
+    problems.check(DataError)
 
 
 def _warnings(data: Logs) -> Iterator[str]:
@@ -215,8 +216,7 @@ def _warnings(data: Logs) -> Iterator[str]:
     if (data.reference or several) and not data.logs[0].dated:
         begin = " two weeks after the reference" if data.reference else ""
         yield f"the logs have no dates: those in question count as{begin}{several}. Give dates if not"
-    for log in data.logs:
-        yield from log.warnings
+    yield from (text for log in data.logs for text in log.warnings)
 
 
 def _gross(logs: Sequence[Log]) -> list[GrossReading]:
@@ -240,8 +240,7 @@ def _gain(known: Fleet, asked: Question, told: LogDiagnosis, request: Request, p
     own, data, spans, found = known.filter, asked.windows, told.spans, told.found
     options = Options(request.alpha, request.seed, request.causes, critical=found.critical)
     read, folds = spans.read, min(FOLDS, spans.campaign.n)
-    before = known.usual(data)
-    after, chosen = before.copy(), Counter[str]()
+    before, after, chosen = known.usual(data), known.usual(data), Counter[str]()
     for k in range(folds):
         rows = np.arange(k, spans.campaign.n, folds)
         aside = frozenset(Aside(int(i)) for i in np.flatnonzero(np.isin(spans.row, rows)))
@@ -302,8 +301,7 @@ def _pictures(
         lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *together))]
         values = [array(channels.in_unit(s, s.signs[0] * line)) for line in lines]
         shown[s.name] = Rows.Values(measured=values[0], nominal=values[1], extended=values[2] if together else ())
-    label = "time since the first log in question"
-    time = Rows.Quantity(label=label, unit="d", values=array(when[by_time] / DAY))
+    time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(when[by_time] / DAY))
     found = []
     for cause, e in after.items():
         whole_of = np.maximum(np.nansum(before**2 + own.read_sd**2, axis=0), own.read_sd**2)
@@ -320,24 +318,31 @@ def _pictures(
 def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[Log]) -> dict[str, Any]:
     """What the causes of the leader change, each and all together, as fields of the findings: means of free runs.
 
-    Whole stretches are run, with the largest move of each cause, and count by how far it has moved on average.
+    Whole logs are run, with the largest move of each cause, and count by how far it has moved on average.
     """
     own, leader, read, changes = known.filter, told.decision.leader, logs[0].read, {}
     if not leader.fit.causes:
         return {}
-    whole = windows(logs, own.given, own.read, 0)
-    usual = known.usual(whole)
+    first = np.array([min(log.n, int(WARM / log.step)) for log in logs])
+    whole = windows([_warmed(log, n) for log, n in zip(logs, first, strict=True)], own.given, own.read, 0)
+    usual, counts = known.usual(whole), whole.rows >= first[whole.machine][:, None]
 
-    def shown(moves: np.ndarray) -> np.ndarray:
-        return own.run(whole, usual + moves, slopes=False).shown
+    def shown(moves: np.ndarray | float) -> np.ndarray:
+        return np.asarray(np.nanmean(own.run(whole, usual + moves, slopes=False).shown[counts], axis=0))
 
-    sound = shown(np.zeros(len(own.knobs)))
+    sound, signs = shown(0.0), np.array([s.signs[0] for s in read])
     for cause in leader.fit.causes:
         moves = _moves(told.spans, leader, cause)
         far = np.abs(moves).sum(axis=1)
         share = far[asked.span].mean() / far.max()
-        mean = np.nanmean(shown(moves[far.argmax()]) - sound, axis=(0, 1))
-        changes[cause] = share * mean * [s.signs[0] for s in read]
+        changes[cause] = share * signs * (shown(moves[far.argmax()]) - sound)
     each = {c: impacts_of(told.found.problem, leader, read, {c: changed}) for c, changed in changes.items()}
     causes = (c.model_copy(update={"impact": each.get(c.id, {})}) for c in told.findings.causes)
     return {"causes": tuple(causes), "impact": impacts_of(told.found.problem, leader, read, changes)}
+
+
+def _warmed(log: Log, first: int) -> Log:
+    """The log in one stretch behind its first rows: all runs begin as warm as was read, and need time to differ."""
+    rows = np.r_[:first, : log.n]
+    values = {name: column[rows] for name, column in log.values.items()}
+    return replace(log, values=values, time=log.time[rows], stretch=np.zeros(len(rows), dtype=int))

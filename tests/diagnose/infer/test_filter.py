@@ -161,6 +161,20 @@ def test_a_torque_is_told_with_the_sign_of_its_column(tmp_path: Path) -> None:
     assert 400 < sun["low"] < sun["predicted"] < sun["high"] and sun["measured"] > 400
 
 
+def test_what_a_cause_changes_is_told_whatever_the_holes_of_the_log(tmp_path: Path) -> None:
+    """Runs with the cause and without begin as warm as was read, and part in more than the two hours of a stretch."""
+    scenario = load("helical_two_stage")
+    ways = {"past": (2, NONE), "sound": (1, NONE), "now": (1, {"wall.Q_flow_external": 80.0})}
+    past, sound, now = (record(tmp_path / f"{k}.csv", scenario, n, changed=ch) for k, (n, ch) in ways.items())
+    true = np.mean(read(now, scenario).values["T_oil"] - read(sound, scenario).values["T_oil"])
+    for path in (past, now):
+        head, *rows = path.read_text().splitlines()
+        cut = [f"{row},{k // 12}\n" for k, row in enumerate(rows)]
+        path.write_text("".join([f"{head},segment\n", *cut]))
+    found = gh.diagnose(None, "helical_two_stage", logs=now, reference_logs=past, quick=True)
+    assert found.impact["T_oil_K"].value == pytest.approx(true, rel=0.15)
+
+
 def test_what_is_shown_without_healthy_logs_is_of_the_filter_that_suits_them(tmp_path: Path, monkeypatch) -> None:
     def suited(own, *_) -> None:
         own.moments, own.parts = True, 2

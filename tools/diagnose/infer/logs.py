@@ -119,13 +119,11 @@ def filter_of(scenario: Scenario, log: Log) -> Filter:
     relays = {f"{name}.relay": True for name in roles.having("switch")}
     flat, nominal = driven.spec.with_values(relays).flat(), Nominal(driven)
     loss = abs(sum(nominal.value(f"{end}.w") * nominal.value(f"{end}.tau") for end in roles.ends))
-    given = {s.reads for s in log.sensors}
-    found = tuple(k for k in knobs(roles, log.sensors, loss) if flat.index.keys() - given >= set(k.paths))
+    free = flat.index.keys() - {s.reads for s in log.sensors}
+    found = tuple(k for k in knobs(roles, log.sensors, loss) if free >= set(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    flat = flat.holding(paths)
-    plant = Plant(flat, paths, [s.reads for s in log.given], [s.reads for s in log.read])
-    bodies, states = plant.flat.bodies, plant.flat.states
-    noise = np.array([QUIET if q.name in bodies else SWITCH if q.unit == "K" else 0.0 for q in states])
+    plant = Plant(flat.holding(paths), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    noise = np.array([QUIET if q.name in flat.bodies else SWITCH if q.unit == "K" else 0.0 for q in flat.states])
     return Filter(plant, found, log.given, log.read, noise)
 
 

@@ -69,18 +69,15 @@ WHENS = (
 
 def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
     """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move."""
-    groups: dict[str, list[Knob]] = {}
-    for knob in (k for k in found if k.cause):
-        groups.setdefault(knob.cause, []).append(knob)
-    return tuple(_cause(own) for own in groups.values())
+    causes = dict.fromkeys(knob.cause for knob in found if knob.cause)
+    return tuple(_cause([knob for knob in found if knob.cause == cause]) for cause in causes)
 
 
 def _cause(own: Sequence[Knob]) -> Cause:
     first = own[0]
     name, doc = ("ln_factor", "logarithm of the factor") if first.unit == "1" else ("shift", "change")
-    most = FARTHEST * first.usual
     forms = [_moved(knob, when, name, when.share / len(own)) for knob in own for when in WHENS]
-    size = Size(name, first.unit, doc, first.usual, -most, most)
+    size = Size(name, first.unit, doc, first.usual, -FARTHEST * first.usual, FARTHEST * first.usual)
     kind, said = KINDS.get(first.cause.split(".")[1]), TABLE.get(first.cause, {})
     exposes = said.get("exposes") or (kind.calibrate if kind else "")
     like = TABLE["classes"].get(said.get("like", ""), "")
