@@ -323,12 +323,12 @@ def _impacts(known: Fleet, asked: Question, told: LogDiagnosis, logs: Sequence[L
     own, leader, read, changes = known.filter, told.decision.leader, logs[0].read, {}
     if not leader.fit.causes:
         return {}
-    first = np.array([min(log.n, int(WARM / log.step)) for log in logs])
-    whole = windows([_warmed(log, n) for log, n in zip(logs, first, strict=True)], own.given, own.read, 0)
-    usual, counts = known.usual(whole), whole.rows >= first[whole.machine][:, None]
+    first = int(WARM / logs[0].step)  # rows that begin each window, which are not corrected
+    whole = windows([_warmed(log, min(first, log.n)) for log in logs], own.given, own.read, 4 * first, first)
+    usual, free = known.usual(whole), replace(whole, counts=whole.there)
 
     def shown(moves: np.ndarray | float) -> np.ndarray:
-        return np.asarray(np.nanmean(own.run(whole, usual + moves, slopes=False).shown[counts], axis=0))
+        return np.asarray(np.nanmean(own.run(free, usual + moves, slopes=False).shown[whole.counts], axis=0))
 
     sound, signs = shown(0.0), np.array([s.signs[0] for s in read])
     for cause in leader.fit.causes:
