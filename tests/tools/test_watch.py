@@ -14,7 +14,7 @@ from gearheat.tools.diagnose.request import Request
 from gearheat.tools.show.event_lines import as_text, opened
 from gearheat.tools.watch.page import page_of
 from gearheat.tools.watch.sources import Files, Source, Stream
-from gearheat.tools.watch.store import Store
+from gearheat.tools.watch.store import Machine, Store
 from gearheat.tools.watch.watch import SILENCE, Watch, identity
 
 HEAD = "time_utc,n_hss_rpm,T_hss_Nm,T_nacelle_C,T_sump_C"
@@ -252,3 +252,15 @@ def test_a_rig_in_python_is_known_by_what_it_holds() -> None:
     assert known.startswith("planetary ") and known == identity(Request(gh.load("planetary")))
     assert known != identity(Request(rig.with_({"cooling.A": "1 m2"})))
     assert identity(Request("planetary")) == identity(Request(Path("planetary")))
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.2])
+def test_cells_that_come_one_by_one_make_samples_whatever_their_stamps(apart: float) -> None:
+    """The time from cell to cell was taken for the step, so that a sample never had a second cell."""
+    store, m = Store(None, ""), Machine("one", "numbers")
+    for k in range(30):
+        for j, column in enumerate("abc"):
+            assert not store.add(m, 600.0 * k + apart * j, {column: float(k)})
+    times, rows = store.rows(m, 1e9)
+    assert times == [600.0 * k for k in range(30)] and rows == [dict.fromkeys("cba", float(k)) for k in range(30)]
+    assert m.step == pytest.approx(600.0) and m.count == 30

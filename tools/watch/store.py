@@ -14,7 +14,7 @@ from ...model.errors import DataError
 
 #: Samples of one machine nearer than this share of the step are one sample.
 NEAR = 0.5
-#: Samples that tell the step.
+#: Samples of a column that tell the step.
 FIRST = 10
 #: Layout of the file.
 VERSION = 1
@@ -100,8 +100,11 @@ class Store:
         if there is None:
             self.base.execute("insert into rows values (?, ?, ?)", [m.name, time, json.dumps(cells)])
             m.count += time > m.answered
-            if not m.step and m.count >= FIRST:
-                m.step = self._step(m)
+            if not m.step and m.count >= FIRST and (step := self._step(m)):
+                m.step, m.count, known = step, 0, zip(*self.rows(m, float("inf")), strict=True)
+                self.base.execute("delete from rows where machine = ?", [m.name])
+                for early in known:  # cells that came one by one make samples now
+                    self.add(m, *early)
             return []
         old: Cells = json.loads(there[1])
         if cells.keys() - old:
@@ -110,10 +113,13 @@ class Store:
         return [column for column in cells if old.get(column, cells[column]) != cells[column]]
 
     def _step(self, m: Machine) -> float:
-        times: list[float] = [
-            t for (t,) in self.base.execute("select time from rows where machine = ? order by time", [m.name])
-        ]
-        return sorted(b - a for a, b in itertools.pairwise(times))[(len(times) - 1) // 2]
+        """Time between samples of the column that came most often, 0 while it is not known."""
+        times: dict[str, list[float]] = {}
+        for time, cells in zip(*self.rows(m, float("inf")), strict=True):
+            for column in cells:
+                times.setdefault(column, []).append(time)
+        most = max(times.values(), key=len)
+        return sorted(b - a for a, b in itertools.pairwise(most))[(len(most) - 1) // 2] if len(most) >= FIRST else 0.0
 
     def until(self, m: Machine, samples: int) -> float:
         """Time of the last of so many samples after those that were answered, or of the last one there is [s]."""
