@@ -280,7 +280,7 @@ def _pictures(
     """The windows as rows, the machine's past before those in question, a picture a cause, and means of the errors."""
     own, read, leader, spans = known.filter, log.read, told.decision.leader, told.spans
     past, now = known.past, asked.windows
-    begin = now.time.min() if log.dated else past.time.max(initial=0.0) + LATER
+    begin = now.time.min() if log.dated else past.time.max(initial=-np.inf) + LATER
     when = np.r_[past.time - begin, now.time - now.time.min()]
     by_time = np.argsort(when, kind="stable")
 

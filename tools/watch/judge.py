@@ -20,6 +20,7 @@ from ..diagnose.model.formula import Formula
 from ..diagnose.report.phrases import name_of
 from ..diagnose.request import Inputs
 from .expect import expect
+from .sources import stem
 from .store import Cells
 
 #: Half of a band of 95 % [standard deviations].
@@ -68,7 +69,7 @@ class Judge:
         if names not in self._known:
             found = fleet(self.inputs.scenario, self.reference, self.siblings, log)
             self._known[names] = found, formulas_of(found, log)
-        of = next((1 + k for k, s in enumerate(self.siblings) if s.name.split(".")[0] == log.name), 0)
+        of = next((1 + k for k, s in enumerate(self.siblings) if stem(s.name) == log.name), 0)
         healthy, formulas = self._known[names]
         return healthy.of(of), formulas
 

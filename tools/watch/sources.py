@@ -92,9 +92,9 @@ class Files:
 
     def _files(self) -> list[tuple[str, Path]]:
         if self.root.is_file():
-            return [(_stem(self.root.name), self.root)]
+            return [(stem(self.root.name), self.root)]
         found = [path for path in self.root.rglob("*") if path.name.endswith(GROWING + WHOLE)]
-        return [(_stem(path.relative_to(self.root).parts[0]), path) for path in sorted(found)]
+        return [(stem(path.relative_to(self.root).parts[0]), path) for path in sorted(found)]
 
     def _name(self, path: Path) -> str:
         """Of a file, by which its place is kept."""
@@ -242,7 +242,8 @@ def queued(queue: Queue[Any]) -> Iterator[Any]:
             yield None
 
 
-def _stem(name: str) -> str:
+def stem(name: str) -> str:
+    """Name of the machine whose file or folder has a name."""
     return next((name.removesuffix(end) for end in (*WHOLE, *GROWING) if name.endswith(end)), name)
 
 

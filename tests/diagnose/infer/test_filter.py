@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import gearheat as gh
 import numpy as np
@@ -132,6 +133,15 @@ def test_a_thermometer_of_a_few_samples_has_no_usual_value(tmp_path: Path) -> No
     log = read(blanked(record(tmp_path / "log.csv", s := load("planetary"), 1), "T_oil_C", rows=slice(12, N)), s)
     data = windows([log], [x.name for x in log.given], [x.name for x in log.read])
     assert np.isfinite(Duty.of(data, log.given, log.read).at(data)).all()
+
+
+def test_a_machine_whose_name_has_a_point_has_its_past(tmp_path: Path) -> None:
+    """The past of A.2 was nobody's, and that of A.1 was also that of a machine A."""
+    log = read(record(tmp_path / "log.csv", scenario := load("planetary"), 1, "T_oil"), scenario)
+    past = [replace(log, name=name) for name in ("A.1.csv", "A.2.csv.gz")]
+    judge = Judge(Inputs(Request("planetary"), scenario, Card(), None, None, None), (), past)
+    judge._known[tuple(s.name for s in log.sensors)] = SimpleNamespace(of=lambda number: number), ()
+    assert [judge.known(replace(log, name=name))[0] for name in ("A", "A.1", "A.2")] == [0, 1, 2]
 
 
 def test_a_watch_goes_on_without_a_thermometer(tmp_path: Path) -> None:
