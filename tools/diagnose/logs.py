@@ -167,8 +167,7 @@ def composed(
 
 def _findings(made: Setting, found: Found, decision: Decision, inputs: Inputs, data: Logs) -> f.Findings:
     """The findings without pictures and words."""
-    logs = data.logs
-    segments = sum(int(log.stretch.max()) + 1 for log in logs)
+    logs, segments = data.logs, sum(int(log.stretch.max()) + 1 for log in data.logs)
     return f.Findings(
         **compose.common(made, found, decision),
         about=f.About(
@@ -212,10 +211,9 @@ def _warnings(data: Logs) -> Iterator[str]:
     given = {"--reference-logs": data.reference, "--sibling-logs": data.siblings}
     if lacks := " and ".join(name for name, logs in given.items() if not logs):
         yield f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
-    several = ", one behind the other" if len(data.logs) > 1 else ""
-    if (data.reference or several) and not data.logs[0].dated:
-        begin = " two weeks after the reference" if data.reference else ""
-        yield f"the logs have no dates: those in question count as{begin}{several}. Give dates if not"
+    ways = {" two weeks after the reference": bool(data.reference), " one behind the other": len(data.logs) > 1}
+    if not data.logs[0].dated and (said := [way for way, holds in ways.items() if holds]):
+        yield f"the logs have no dates: those in question count as{','.join(said)}. Give dates if not"
     yield from (text for log in data.logs for text in log.warnings)
 
 

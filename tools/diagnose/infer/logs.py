@@ -222,8 +222,7 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     own, span = copy(found.filter), _spans(data.time, season)
     changed = np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
     wide = levels.covariance[0, :k, :k] + levels.season[:k, :k] + changed
-    if found.share:
-        own.least = own.scatter
+    own.least = own.scatter if found.share else own.least
     bent = found.curves if found.share else curves(own, data)
     places = Places(season, np.ones((len(season), 1)), found.does(data), bent)
     at, passed = walk(own, data, places, wide, _pass(progress, "logs in question"))

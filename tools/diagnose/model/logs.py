@@ -231,12 +231,15 @@ class Filter:
         places, run = [ctypes.byref(r) for r in (self.plant.record, logs, record(**found))], library().follow
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
-            share_rows(lambda begin, end, at=first: int(run(*places, at + begin, at + end)), last - first, SIDE, 0)
+
+            def followed(begin: int, end: int, at: int = first) -> int:
+                return int(run(*places, at + begin, at + end))
+
+            share_rows(followed, last - first, SIDE, 0)
             if progress:
                 progress(float(lengths[:last].sum() / lengths.sum()))
         found["error"] = by_piece(piece, data.read - found["shown"])
-        back = np.argsort(order)
-        return Passed(variance=self.scatter**2, **{name: values[back] for name, values in found.items()})
+        return Passed(variance=self.scatter**2, **{name: values[np.argsort(order)] for name, values in found.items()})
 
 
 def log_likelihood(passed: Passed) -> float:
