@@ -32,7 +32,7 @@ class Instrument:
         name: of the instrument
         column: column of a measured table
         reads: path in the model
-        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency" or "current"
+        kind: what it is, one of `tables.Kind`
         role: "given" drives the model, "read" is compared
         unit: of the column
         magnitude: whether the column holds magnitudes
@@ -194,13 +194,19 @@ class Scenario:
 
     def driven_by(self, names: Iterable[str]) -> Scenario:
         """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
+        return self.driven(self.drive_by(names))
+
+    def drive_by(self, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+        """The same as a drive; shafts that turn apart from those named keep what the rig says."""
         shafts = self.shaft_paths()
-        return self.driven(deduce_drive(self.given, [name for name in names if name in shafts]))
+        named = [name for name in names if name in shafts]
+        tied = self.spec.turning_with(name.rpartition(".")[0] for name in named)
+        own, apart = ({e: q for e, q in self.given.items() if (e in tied) is so} for so in (True, False))
+        return {**apart, **deduce_drive(own, named)}
 
     def driven_by_torques(self) -> Scenario:
         """The scenario with signed torques given where its loads are."""
-        signed = {"load": "tau"}
-        return self.driven({end: [signed.get(key, key) for key in keys] for end, keys in self.given.items()})
+        return self.driven({end: ["tau" if q == "load" else q for q in keys] for end, keys in self.given.items()})
 
     def shaft_paths(self) -> set[str]:
         """Paths of the quantities that may be given at the shaft ends."""

@@ -9,11 +9,13 @@ from typing import Any
 
 from ..core.component import Component, make
 from ..core.connect import Assembly
+from ..core.declare import list_declared
 from ..core.flat import FlatModel
 from ..core.flatten import flatten
 from ..errors import Problems, ScenarioError, suggestion
 from ..files import tables
 from ..parts import PARTS
+from ..parts.ports import Flange
 
 #: Kinds of machines, a file in `layouts` each. The parts of the last are named by the rig file alone.
 LAYOUTS = ("planetary", "harmonic", "cycloidal", "cycloidal_printed", "rv_stage", "drum_motor", "network")
@@ -115,7 +117,7 @@ class Spec:
     def driven(self, given: Mapping[str, Iterable[str]], drives: str = "") -> Spec:
         """The spec driven at its shaft ends.
 
-        A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+        Shafts whose speed is given nowhere keep their inertia as a state; otherwise inertias are left out.
 
         Args:
             given: shaft end -> "w", "tau" and "load" that are given there; nothing at those not named
@@ -131,8 +133,19 @@ class Spec:
                 [f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown]
             )
         choices |= {f"{end}.drives": end == drives for end in self.of_type("ShaftEnd")}
-        dynamic = not any("w" in quantities for quantities in given.values())
-        return self.with_values(choices | {f"{name}.dynamic": dynamic for name in self.of_type("Inertia")})
+        turned = self.turning_with(end for end, quantities in given.items() if "w" in quantities)
+        return self.with_values(choices | {f"{n}.dynamic": n not in turned for n in self.of_type("Inertia")})
+
+    def turning_with(self, parts: Iterable[str]) -> set[str]:
+        """All parts that shafts tie to some of them, these among them; what stands still ties nothing."""
+        shafts = {f"{p.name}.{key}" for p in self.parts for key in list_declared(self.types[p.type], Flange)}
+        still = {f"{name}.flange" for name in self.of_type("FixedFlange")}
+        met = [{port.rpartition(".")[0] for port in shafts & {*net}} for net in self.connections if not still & {*net}]
+        found, grown = set(parts), True
+        while grown:
+            joined = set[str]().union(*(net for net in met if net & found))
+            found, grown = found | joined, not joined <= found
+        return found
 
 
 def assemble(spec: Spec) -> Assembly:

@@ -61,10 +61,11 @@ class Nominal:
 
     @cached_property
     def ratios(self) -> Mapping[str, float]:
-        """Speed of each shaft end over that of the first one that turns at the operating point."""
+        """Speed of each shaft end over that of the first one that turns at the operating point; NaN of others apart."""
         speeds = {end: self.value(f"{end}.w") for end in self.ends}
-        first = next((w for w in speeds.values() if abs(w) > REST), np.nan)
-        return {end: w / first for end, w in speeds.items()}
+        first = next((end for end, w in speeds.items() if abs(w) > REST), None)
+        tied = self.scenario.spec.turning_with([first] if first else [])
+        return {end: w / speeds[first] if first and end in tied else np.nan for end, w in speeds.items()}
 
 
 def model_values(campaign: Campaign) -> dict[str, np.ndarray]:

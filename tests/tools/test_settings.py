@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from gearheat.fmu.export import export
 from gearheat.model.errors import ScenarioError
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -26,6 +29,19 @@ GIVEN = {"carrier": ("w", "tau")}
 def test_named_quantities_take_the_place_of_given_ones(named, drive):
     found = deduce_drive(GIVEN, named)
     assert {end: set(quantities) for end, quantities in found.items()} == {e: set(q) for e, q in drive.items()}
+
+
+def test_a_shaft_that_turns_apart_keeps_its_drive():
+    scenario = load("helical_two_stage")
+    parts, net = (
+        [PartSpec("motor", "ShaftEnd"), PartSpec("wheel", "Inertia", {"J": 0.1})],
+        ("motor.flange", "wheel.flange"),
+    )
+    apart = replace(scenario, spec=scenario.spec.with_parts(parts, [net])).driven({**scenario.given, "motor": ("w",)})
+    assert apart.drive_by(["input.w"]) == {**scenario.drive_by(["input.w"]), "motor": ("w",)}
+    assert apart.drive_by(["motor.tau"]) == {**scenario.given, "motor": ("tau",)}
+    flat = flat_of(adjust(apart, ["input.tau=50 N.m", "output.tau=-600 N.m"]))
+    assert [q.name for q in flat.states if q.name.endswith(".w")] == ["rotor.w"]
 
 
 def test_a_machine_driven_by_torques_alone_keeps_its_speed_as_a_state():

@@ -16,7 +16,7 @@ from ...model.machines.spec import Spec
 from ...scenarios.film_map import find_map, names_map
 from ...scenarios.given import Settings, assignments_of
 from ...scenarios.housing import oil_problems
-from ...scenarios.scenario import DRIVES, Scenario, check_drives, deduce_drive, parse_assignments
+from ...scenarios.scenario import DRIVES, Scenario, check_drives, parse_assignments
 from ...scenarios.write import SET
 
 Drive = Mapping[str, tuple[str, ...]]
@@ -58,7 +58,7 @@ def adjust(
     problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
-    driven = deduce_drive(scenario.given, ends) if drive is None else drive
+    driven = scenario.drive_by(ends) if drive is None else drive
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
