@@ -70,6 +70,18 @@ def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
     assert theirs["efficiency.P_loss [W]"] == pytest.approx(ours["efficiency.P_loss [W]"], abs=1e-2)
 
 
+def test_the_mean_loss_over_a_duty_is_that_of_all_its_rows(gearheat, tmp_path):
+    duty = tmp_path / "duty.csv"
+    rows = [f"{10 * k},150,{2500 if k % 30 < 10 else 300},20" for k in range(181)]
+    duty.write_text("time [s],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n" + "\n".join(rows))
+    out = tmp_path / "out.csv"
+    fine, coarse = (
+        gearheat("simulate", "planetary", "--duty", duty, "-o", out, "--every", every) for every in ("10 s", "5 min")
+    )
+    assert fine.out.splitlines()[1] == coarse.out.splitlines()[1]
+    assert columns(out)["time [s]"] == pytest.approx(np.arange(0.0, 1801.0, 300.0))
+
+
 def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
     fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
     duty.write_text("Time (min),carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n0,100,1500,35\n10,100,1500,35\n")

@@ -17,7 +17,17 @@ from ...scenarios.given import RigLike, Settings, assignments_of, in_seconds, li
 from ...scenarios.values import in_range
 from ..show.console import note
 from ..solve.settings import refuse_given
-from ..solve.simulate import Duty, TimeSeries, duty_file, far_in, held_over, output_step, over_the_duty
+from ..solve.simulate import (
+    Duty,
+    TimeSeries,
+    duty_file,
+    far_in,
+    finer,
+    held_over,
+    output_step,
+    over_the_duty,
+    rows_shown,
+)
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 
@@ -159,7 +169,8 @@ def play(
     inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
     run = partial(play_fmu, about) if ours else partial(play_apart, fmu)
     between = output_step(schedule, every, dt)
-    times = None if between == dt else schedule.even(between)
+    fine = between / finer(schedule, between, dt)
+    times = None if fine == dt else schedule.even(fine)
     played = run(inputs, schedule.stop, dt, begin=schedule.start, start=start, output_times=times)
     units = {name: q.unit for name, q in about.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
@@ -173,7 +184,9 @@ def play(
     held = [replace(q, start=float(about.variables[n].start or 0.0)) for n, q in ports.items() if n not in first]
     told = [*held_over(held, "in the FMU"), *over_the_duty(played.time, warm, lost[0] if lost else None)]
     said = told if made_here else []
-    return TimeSeries(f"{fmu.stem}, {path.stem}", played.time, columns, units, (before, behind), said)
+    rows = rows_shown(played.time, schedule, between)
+    columns = {name: column[rows] for name, column in columns.items()}
+    return TimeSeries(f"{fmu.stem}, {path.stem}", played.time[rows], columns, units, (before, behind), said)
 
 
 def _of_gearheat(about: Described) -> bool:

@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 LONG = 5_000
 #: Rows of a result above which it has more time between them where nothing is asked for.
 MOST = 20_000
+#: Rows up to which more are calculated than shown, for means over the duty.
+ENOUGH = 10_000
+#: Part of a step by which round-off moves a row.
+ROUND_OFF = 1e-6
 #: Times between rows to choose from [s].
 STEPS = (
     OUTPUT_STEP,
@@ -222,11 +226,13 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None)
         schedule = read_duty(path, flat)
     through = compiled(flat, schedule) if len(schedule.time) > LONG else None
     begin, step = first_states(scenario, flat, schedule, how), output_step(schedule, every)
-    result = integrate(flat, schedule, start=begin, through=through, every=step)
+    result = integrate(flat, schedule, start=begin, through=through, every=step / finer(schedule, step))
     warm, lost = {name: result[name] for name in flat.bodies}, loss_names(scenario, result.columns).values()
     whole = sum((result[name] for own in lost for name in own), np.zeros(len(result.index)))
     before = {"schema": "gearheat.simulate/1", "rig": scenario.name, "out": None, "plot": None}
-    into = result.columns.get(f"{scenario.drives}.P", np.zeros(0))
+    shown = rows_shown(result.index, schedule, step)
+    columns = {key: column[shown] for key, column in result.columns.items()}
+    into = columns.get(f"{scenario.drives}.P", np.zeros(0))
     behind = {
         "backward": int((into < 0).sum()),
         "far": far_in(path.name, schedule, usual.operating_point),
@@ -245,7 +251,27 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = (), *, every: Any = None)
         *(["at the end: " + ", ".join(end.flows)] if end.flows else []),
         *end.headlines,
     ]
-    return TimeSeries(name, result.index, result.columns, result.units, (before, behind), said)
+    return TimeSeries(name, result.index[shown], columns, result.units, (before, behind), said)
+
+
+def finer(schedule: Schedule, step: float, least: float = 0.0) -> int:
+    """Rows to calculate for each that is shown, so that means over a duty follow its own rows, within `ENOUGH`.
+
+    Args:
+        schedule: the duty
+        step: time between two rows that are shown [s]
+        least: the shortest time between two rows [s]
+    """
+    gaps = np.diff(schedule.time)
+    least = max(float(np.median(gaps[gaps > 0])), (schedule.stop - schedule.start) / ENOUGH, least)
+    return max(int(step / least), 1)
+
+
+def rows_shown(time: np.ndarray, schedule: Schedule, step: float) -> np.ndarray:
+    """Which rows (n,) are a step apart, at a jump or the last one."""
+    place = (time - schedule.start) / step
+    at_jump = np.isin(time, schedule.time[1:][np.diff(schedule.time) == 0])
+    return np.asarray((np.abs(place - place.round()) < ROUND_OFF) | at_jump | (time == time[-1]))
 
 
 def far_in(name: str, schedule: Schedule, usual: Mapping[str, float], where: str = "the rig file") -> list[str]:
