@@ -95,7 +95,7 @@ def test_what_it_made_is_told(gearheat, tmp_path):
     plate = ("--stages", "bevel,spur", "--ratio", 9, "--power", "3 kW", "--speed", "14500 rpm")
     answer = gearheat("new", "told", *plate, "-o", tmp_path / "told.toml")
     assert answer.code == 0, answer.err
-    assert "turns at 14,500 rpm, and motors of such units at most at 6,000 rpm" in answer.err
+    assert "turns at 14,500 rpm, and motors of industrial units at most at 6,000 rpm" in answer.err
     for words in ("stage 1: bevel", "d_e2", "stage 2: spur", "efficiency 9", "each with its rule"):
         assert words in answer.out
 

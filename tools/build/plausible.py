@@ -23,8 +23,9 @@ MACHINES: dict[str, Any] = tables("tools.build", "machines.toml")
 WARM = (20.0, 100.0)
 #: How much warmer than at the name plate a hall is for which makers rate units [K].
 HALL = 20.0
-#: Fastest motors of such units [rpm].
+#: Fastest motors of industrial units, and of electric axles [rpm].
 FAST = 6000
+AXLES = 20000
 #: Fastest pitch line of gears that dip [m/s], mean diameter times speed of bearings in a bath [mm/min], and lips of NBR
 #: and FKM [m/s]: usual limits.
 DIPPING = 20.0
@@ -88,7 +89,8 @@ def notes(
         losses: of its parts [W]
     """
     if (rpm := round(30 / math.pi * speed)) > FAST:
-        yield f"the input turns at {rpm:,} rpm, and motors of such units at most at {FAST:,} rpm. Check --speed."
+        usual = f"motors of industrial units at most at {FAST:,} rpm, those of electric axles at {AXLES:,} rpm"
+        yield f"the input turns at {rpm:,} rpm, and {usual}. Check --speed."
     if abs(off := made.ratio / made.asked - 1) > OFF:
         yield f"the ratio is {made.ratio:.4g}, {100 * off:+.1f} % from {made.asked:g}, as teeth are whole."
     yield from _too_fast(made, around)
