@@ -11,7 +11,19 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from ..model.errors import ScenarioError, suggestion
 
 #: Kinds of sensors.
-Kind = Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power", "efficiency", "current"]
+Kind = Literal[
+    "oil_temp",
+    "wall_temp",
+    "ambient",
+    "torque",
+    "speed",
+    "power",
+    "heat",
+    "flow",
+    "air_speed",
+    "efficiency",
+    "current",
+]
 
 
 def _is_sign(value: float) -> float:

@@ -177,7 +177,8 @@ def _torque(
     if not sign:
         yield f"{where}. Check its unit, which is taken for {sensor.unit}."
     elif len(turned) == len(ratios):
-        yield f"{where}: its sign is the other one. Turn it, or say magnitude = true of this sensor in the card."
+        given = "".join(f", or that of {s.column} is" for s in campaign.given if s.kind == "torque")
+        yield f"{where}: its sign is the other one{given}. Turn it, or say magnitude = true of this sensor in the card."
     else:
         yield (
             f"{where}: its sign is the other one in {len(turned)} of {len(ratios)} rows, those of one direction. Write"

@@ -25,6 +25,8 @@ COLDEST = 213.15
 HOTTEST = 473.15
 #: A given speed or torque this many times the largest, or less than this part of the rig's, has another unit.
 FAR = 50.0
+#: Times a typical speed or torque of a reference from which that of the data is another unit's.
+UNLIKE = 8.0
 #: Efficiencies below this in most rows cannot be [1].
 POOREST = 0.2
 #: Efficiencies above this in most rows cannot be [1]: an instrument that errs raises them in one direction alone.
@@ -100,17 +102,25 @@ def same_as_reference(campaign: Campaign, reference: Campaign) -> list[str]:
 
 
 def not_in_reference(campaign: Campaign, reference: Campaign) -> list[str]:
-    """Warnings of what a campaign compares and its reference lacks.
+    """Warnings of what a campaign compares and its reference lacks, and of quite other speeds and torques.
 
     Args:
         campaign: readings of the machine
         reference: readings of it when healthy
     """
-    return [
+    lacking = [
         f"{reference.name} lacks {sensor.column}, which {campaign.name} has: what it always is off by is not"
         " calibrated, and may be taken for a fault. Give a reference with it."
         for sensor in campaign.read
         if sensor.name not in reference.values
+    ]
+    return lacking + [
+        f"{sensor.column} is about {format_value(sensor, own)} in {campaign.name}, {format_value(sensor, other)} in"
+        f" {reference.name}. Check that the units of both are what they say."
+        for sensor in campaign.given
+        if sensor.kind in ("speed", "torque") and sensor.name in reference.values
+        for own, other in [[float(np.nanmedian(np.abs(c.values[sensor.name]))) for c in (campaign, reference)]]
+        if not 1 / UNLIKE <= own / (other or 1e-9) <= UNLIKE
     ]
 
 

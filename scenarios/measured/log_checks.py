@@ -140,6 +140,7 @@ def _as_campaign(
     span = len(lines) // n * step
     means = {sensor: np.array([_mean(column[block]) for block in blocks]) for sensor, column in values.items()}
     dwell = np.full(n, np.inf if span >= DAY else span)
+    name = f"{name} (means of {len(lines) // n} rows)" if len(lines) > n else name
     return Campaign.of(name, sensors, means, np.arange(n), order=np.arange(n), dwell=dwell, lines=lines[first])
 
 

@@ -45,7 +45,14 @@ ACCURACY: Mapping[str, tuple[float, float]] = _TABLES["accuracy"]
 #: SI unit of what a kind of sensor reads.
 SI: Mapping[str, str] = _TABLES["units"]
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
-KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power", "A": "current"}
+KINDS: Mapping[str, str] = {
+    "N.m": "torque",
+    "rad/s": "speed",
+    "W": "power",
+    "A": "current",
+    "m3/s": "flow",
+    "m/s": "air_speed",
+}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
 NAMES: Mapping[str, tuple[str, str]] = {
     "w": ("n", "rpm"),
@@ -319,9 +326,11 @@ class _Sensors:
         if unit not in KINDS:
             self.problems.append(
                 f"{self.card.name} sensors.{instrument.name}: {instrument.reads} is in {unit}, which no kind of sensor"
-                " reads. Read a temperature, a torque, a speed, a power or a current."
+                " reads. Read a temperature, a torque, a speed, a power, a heat flow, a current, a flow of oil or water"
+                " or the speed of the air."
             )
-        return KINDS.get(unit, "")
+        heat = unit == "W" and instrument.reads.rpartition(".")[2].startswith("Q_flow")
+        return "heat" if heat else KINDS.get(unit, "")
 
     def _default_accuracy(self, instrument: Instrument, kind: str) -> tuple[float, float]:
         if None not in (instrument.repeat_sd, instrument.offset_sd) or kind not in ACCURACY:

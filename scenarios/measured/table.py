@@ -18,7 +18,7 @@ class Sensor:
         name: stable name of the rig file ("T_oil")
         column: column of the user's file ("Ölsumpf")
         reads: path of an input, state or output of the model ("oil.T")
-        kind: "oil_temp", "wall_temp" (any body), "ambient", "torque", "speed", "power", "efficiency" or "current"
+        kind: what it is, "oil_temp" or another of `tables.Kind`; "wall_temp" of any body
         role: "given" drives the model, "read" is compared
         unit: of the column
         repeat_sd: scatter from reading to reading [SI]

@@ -63,7 +63,8 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     options = Options(request.alpha, request.seed, request.causes, logs.causes if logs else ())
     found = temper(weigh(made.problem, made.formulas, options, lambda stage, done: then(stage, 0.05 + 0.75 * done)))
     if logs:
-        found = found.beside(logs.found.log_bayes_factor)
+        asked = {cause.id: logs.asked(cause) for cause in made.causes}
+        found = found.beside(lambda causes: logs.found.log_bayes_factor(asked[c] for c in causes))
     decision = decide(found)
     held: Sequence[Gain] = ()
     if decision.verdict != "consistent" and not request.quick:
@@ -129,7 +130,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         extended_rig=extended,
         predictions=predict(found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in hidden.items()),
-        warnings=(*inputs.warnings, *roughly, *(f"in the extended rig {line}" for line in cut)),
+        warnings=(*roughly, *inputs.warnings, *(f"in the extended rig {line}" for line in cut)),
     )
 
 

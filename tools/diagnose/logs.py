@@ -20,9 +20,10 @@ from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .answer.quality import is_apart
 from .infer.found import Found, Hypothesis
-from .infer.logs import LATER, Fleet, Question, fleet, problem_of, question, window_length
+from .infer.logs import DAY, LATER, Fleet, Question, fleet, problem_of, question, window_length
 from .infer.problem import Aside
 from .infer.weigh import Options, Progress, weigh
+from .library.cause import Cause
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
@@ -31,8 +32,6 @@ from .report.words import with_words
 from .request import Inputs, Request
 from .setting import Setting
 
-#: A day [s].
-DAY = 86400.0
 #: Time in which what a cause changes has come about [s].
 WARM = 3 * DAY
 #: p of what is left, at most: samples count for less than they may, so that it is smaller than expected.
@@ -68,6 +67,12 @@ class LogDiagnosis:
     def causes(self) -> tuple[str, ...]:
         """All that logs can show."""
         return tuple(dict.fromkeys(formula.cause.id for formula in self.found.formulas))
+
+    def asked(self, cause: Cause) -> str:
+        """As what logs were asked about a cause: itself, or of those like it the one that they speak for most."""
+        alike = [of.cause.id for of in self.found.formulas if cause.like and of.cause.like == cause.like]
+        known = cause.id in self.causes or not alike
+        return cause.id if known else max(alike, key=lambda id: self.found.log_bayes_factor([id]))
 
     def of(self, cause: str) -> float:
         """Probability of a cause."""

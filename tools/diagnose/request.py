@@ -94,13 +94,13 @@ class Inputs:
         """What the user should know of the files."""
         tables = [c.warnings for c in (self.data, self.reference, self.points) if c is not None]
         tables += [c.series.warnings for c in (self.data, self.reference) if c is not None and c.series is not None]
-        if self.reference is not None and self.data is not None and self.data.series and not self.reference.series:
-            tables.append((ALONE,))
         if self.data is not None and self.reference is not None:
+            tables += [(ALONE,)] if self.data.series and not self.reference.series else []
             tables.append(tuple(not_in_reference(self.data, self.reference)))
         if self.data is not None and self.points is not None:
             tables.append(tuple(outlying(self.data, self.points)))
-        return tuple(dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found))
+        told = dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found)
+        return tuple(sorted(told, key=lambda text: text.endswith("is not used.")))  # what matters more comes first
 
     @property
     def invisible(self) -> Mapping[str, str]:

@@ -12,6 +12,7 @@ from gearheat.scenarios.measured.table import Sensor
 from gearheat.tools.diagnose.answer.findings import Findings
 from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.infer.logs import Fleet, filter_of, fleet, question
+from gearheat.tools.diagnose.library.knobs import moves
 from gearheat.tools.diagnose.logs import LogDiagnosis, Logs, composed, formulas_of
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.watch.expect import expect
@@ -127,6 +128,15 @@ def test_what_logs_say_of_a_cause_is_free_of_its_prior(farm: Farm) -> None:
     none = [h.log_joint - found.critical for h in found.hypotheses if not h.causes]
     expected = np.logaddexp.reduce(logs) - np.logaddexp.reduce(none)
     assert found.log_bayes_factor(["cooling.cooler"]) == pytest.approx(expected)
+
+
+def test_a_cause_that_logs_were_not_asked_about_counts_as_one_like_it(farm: Farm) -> None:
+    told, found = farm.asked(*WORN), {cause.id: cause for cause in moves(farm.filter.knobs)}
+    preload = found["losses.bearing_preload"]
+    assert told.asked(preload) == "losses.bearing_preload"
+    alike = {id for id, cause in found.items() if cause.like == preload.like}
+    assert told.asked(replace(preload, id="losses.bearing_friction")) in alike
+    assert told.asked(replace(preload, id="losses.windage", like="")) == "losses.windage"
 
 
 def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(farm: Farm) -> None:

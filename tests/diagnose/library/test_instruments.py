@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from gearheat.scenarios.measured.card import Card, Channel
+from gearheat.scenarios.measured.card import Card, CardSensor, Channel
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.tools.diagnose.library.cause import Row, as_array
 from gearheat.tools.diagnose.library.forms import Context
-from gearheat.tools.diagnose.library.knobs import knobs
+from gearheat.tools.diagnose.library.knobs import knobs, moves
 from gearheat.tools.diagnose.library.sensors import BODY, causes
 
 ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
@@ -217,3 +217,23 @@ def test_an_instrument_that_was_checked_is_right_but_may_be_in_the_wrong_place(p
     assert [form.name for form in torque.forms] == [""], "of two transducers one is left"
     differ = {knob.sensor: knob.cause for knob in knobs(planetary.roles, sensors, 100.0) if knob.sensor}
     assert not differ["T_oil"] and not differ["T_amb"] and differ["T_wall"] == "sensor.wall_temp.offset"
+
+
+def test_a_loss_of_logs_may_have_changed_in_one_part_or_in_all(planetary):
+    found = {cause.id: cause for cause in moves(knobs(planetary.roles, planetary.sensors, 100.0))}
+    forms = {form.name: form for form in found["losses.bearing_preload"].forms}
+    here = Row({}, {}, 1.0)
+    together = forms["all of them"].values({"ln_factor": 0.5}, here)
+    assert len(together) > 1 and set(together.values()) == {0.5}
+    assert sum(form.weight for form in forms.values()) == pytest.approx(1.0)
+    single = [name for name in forms if name.endswith(": loss")]
+    assert {next(iter(forms[name].values({"ln_factor": 0.5}, here))) for name in single} == together.keys()
+    assert not any("all of them" in form.name for form in found["sensor.oil_temp.offset"].forms)
+
+
+def test_a_heat_a_flow_and_the_air_have_instruments_of_their_own(planetary):
+    card = Card(sensors={"Q": CardSensor(reads="room.Q_flow"), "v": CardSensor(reads="room.air_speed")})
+    sensors = [s for s in sensors_of(planetary.scenario, card) if s.name in ("Q", "v")]
+    assert {s.name: (s.kind, s.role) for s in sensors} == {"Q": ("heat", "read"), "v": ("air_speed", "given")}
+    found = {cause.id: cause for cause in causes(Context(planetary.roles, planetary.ranges, sensors))}
+    assert found["sensor.heat.gain"].size.high >= 0.5 and "sensor.air_speed.gain" in found

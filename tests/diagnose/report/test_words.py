@@ -12,6 +12,7 @@ from gearheat.tools.diagnose.answer.findings import (
     Channel,
     FormShare,
     Hypothesis,
+    Impact,
     Played,
     Remainder,
     RemainderChannel,
@@ -225,6 +226,23 @@ def test_an_extension_that_is_worse_is_told_first() -> None:
     assert "Do not use the extended rig" in said.do
     within = explained(played=played, gain=None, channels=[oil.model_copy(update={"offset_sd": 3.0})])
     assert "extended rig" not in within.says.do, "an error within the tolerance of the instrument"
+
+
+def test_what_goes_both_ways_is_told_for_single_points() -> None:
+    oil = Impact(value=0.19, ci95=(0.1, 0.28), single=(-2.8, 4.3), unit="K", what="oil temperature")
+    assert (
+        phrases.impact(oil) == "oil temperature 0.19 K higher (0.1 to 0.28; 2.8 lower to 4.3 higher at single points)"
+    )
+    assert phrases.impact(oil.model_copy(update={"single": (0.05, 0.4)})).endswith("(0.1 to 0.28)")
+
+
+def test_the_extended_rig_is_worse_where_all_channels_together_say_so() -> None:
+    played = {
+        "T_oil": Played(rms_calibrated=1.5, rms_extended=0.3, unit="K"),
+        "T_wall": Played(rms_calibrated=0.4, rms_extended=0.5, unit="K"),
+    }
+    assert phrases.doubt(explained(played=played, gain=None)) == ""
+    assert "T_wall 0.4" in phrases.doubt(explained(played={"T_wall": played["T_wall"]}, gain=None))
 
 
 def test_readings_left_out_say_whether_the_extended_rig_is_used() -> None:

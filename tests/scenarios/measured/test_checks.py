@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.checks import not_in_reference, outlying, same_as_reference, too_small
@@ -42,7 +44,7 @@ def test_speed_in_radians_per_second(read, rig, planetary):
 
 def test_a_torque_of_the_other_sign(read, helical, planetary):
     columns = {**helical, "T_input_Nm": [v / 12.4 for v in helical["T_output_Nm"]]}
-    assert "its sign is the other one. Turn it, or say magnitude = true" in problems(
+    assert "its sign is the other one, or that of T_output_Nm is. Turn it, or say magnitude = true" in problems(
         read, "helical_two_stage", columns, '[sensors.T_input_Nm]\nreads = "input.tau"\n'
     )
     mixed = {**columns, "T_input_Nm": [v * w for v, w in zip(columns["T_input_Nm"], [1, -1] * 3, strict=True)]}
@@ -134,6 +136,10 @@ def test_a_reference_without_a_compared_channel_warns(read, helical):
     assert not not_in_reference(whole, whole)
     less = read("helical_two_stage", {c: v for c, v in helical.items() if c != "T_wall_C"})
     assert [text.partition(",")[0] for text in not_in_reference(whole, less)] == ["data.csv lacks T_wall_C"]
+    speed = next(s.name for s in whole.given if s.kind == "speed")
+    slip = replace(whole, values={**whole.values, speed: whole.values[speed] / 60})
+    (said,) = not_in_reference(slip, whole)
+    assert "in data.csv, 1015 rpm in data.csv. Check that the units of both are what they say." in said
 
 
 def test_points_far_outside_warn(read, helical):

@@ -6,30 +6,19 @@ import numpy as np
 
 from ....scenarios.measured.checks import ONE_VALUE
 from ....scenarios.measured.table import Sensor
+from ..library.entries import TABLE
 from ..model.entries import Measured
 from .findings import Channel
 
-#: Kind of a sensor -> unit of a result, by how much its numbers are larger than SI, and what it measures in words.
-KINDS = {
-    "oil_temp": ("degC", 1.0, "oil temperature"),
-    "wall_temp": ("degC", 1.0, "body temperature"),
-    "ambient": ("degC", 1.0, "room temperature"),
-    "torque": ("N.m", 1.0, "torque"),
-    "speed": ("rpm", 30 / np.pi, "speed"),
-    "power": ("W", 1.0, "power"),
-    "efficiency": ("%", 100.0, "efficiency"),
-    "current": ("A", 1.0, "current"),
-}
-#: Unit of a result -> ending of a channel's name.
-ENDINGS = {"degC": "_C", "N.m": "_Nm", "W": "_W", "rpm": "_rpm", "%": "_pct", "A": "_A"}
-
+#: Kind of a sensor -> unit of a result, by how much its numbers are larger than SI, what it measures, ending of a name.
+KINDS = TABLE["shown"]
 #: Levels further apart than this share of their range are different ones.
 GAP = 0.06
 
 
 def unit(sensor: Sensor) -> str:
     """Unit of its readings."""
-    return KINDS[sensor.kind][0]
+    return str(KINDS[sensor.kind][0])
 
 
 def unit_of_difference(sensor: Sensor) -> str:
@@ -54,7 +43,7 @@ def difference(sensor: Sensor, value: float) -> float:
 
 def change_name(sensor: Sensor) -> str:
     """Name of a change of its readings: T_oil_K."""
-    ending = ENDINGS[unit(sensor)]
+    ending = KINDS[sensor.kind][3]
     return sensor.name.removesuffix(ending) + ("_K" if ending == "_C" else ending)
 
 

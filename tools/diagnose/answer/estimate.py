@@ -181,7 +181,9 @@ def impacts(
             slope = weights @ jacobian
             value, sd = float(weights[run] @ change[run] / share), float(np.sqrt(slope @ covariance @ slope))
             ends = (value - WIDE * sd, value + WIDE * sd)
-            told[name] = findings.Impact(value=value, ci95=ends, unit=unit, what=what)
+            each = (weights * change)[run & (weights != 0)] * (weights != 0).sum()
+            single = None if name in LOSS else (float(each.min()), float(each.max()))  # two torques are one loss
+            told[name] = findings.Impact(value=value, ci95=ends, single=single, unit=unit, what=what)
 
     for _, s, mine in channels.compared(o):
         weights = channels.difference(s, 1.0) * mine / mine.sum()
@@ -217,7 +219,7 @@ def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np
         ratios: speed of each shaft end over that of the one at which the loss is stated
     """
     torque, power = np.zeros(o.m), np.zeros(o.m)
-    speed = next((s for s in o.campaign.sensors if s.kind == "speed" and ratios.get(_end(s))), None)
+    speed = next((s for s in o.campaign.sensors if s.kind == "speed" and abs(ratios.get(_end(s), 0.0)) > 0), None)
     ends = set[str]()
     for _, s, mine in channels.compared(o):
         if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)):

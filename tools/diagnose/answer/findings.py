@@ -71,6 +71,7 @@ class Impact(Model):
 
     value: Number
     ci95: Interval
+    single: Interval | None = Field(default=None, description="least and largest change at a data point")
     unit: str = ""
     what: str = Field(default="", description="what changes, in words: oil temperature, loss")
 

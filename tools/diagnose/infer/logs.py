@@ -34,6 +34,8 @@ SWITCH = 0.8
 SEASONS = 12
 #: Spans of time of which the logs in question tell the knobs, about.
 SPANS = 16
+#: Pieces of short logs whose knobs are sought each apart without healthy logs: else a change would count as scatter.
+PIECES = 3
 #: Samples of a window that count, at least, and windows below which logs are short.
 SHORTEST = 40
 FEW = 5
@@ -53,6 +55,8 @@ FOLLOWED = (1.0, 0.3, 0.1, 0.03)
 REFUTED = 2.0
 #: How windows of a season differ, as shares of how machines do: chosen with them.
 WANDERED = (0.1, 0.03, 0.01)
+#: A day [s].
+DAY = 86400.0
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -219,20 +223,21 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     season = season * min(SEASONS, len(there)) // len(there)
     if not found.share:  # what is shown later is of this filter, too
         suit(found.filter, data, np.zeros((len(season), k)))
-    own, span = copy(found.filter), _spans(data.time, season)
+    own, span = copy(found.filter), _spans(data.time, season, SPANS)
     changed = np.diag([knob.sd**2 if knob.cause else 0.0 for knob in own.knobs])
     wide = levels.covariance[0, :k, :k] + levels.season[:k, :k] + changed
     own.least = own.scatter if found.share else own.least
     bent = found.curves if found.share else curves(own, data)
-    places = Places(season, np.ones((len(season), 1)), found.does(data), bent)
+    group = season if found.share else _spans(data.time, season, PIECES)
+    places = Places(group, np.ones((len(season), 1)), found.does(data), bent)
     at, passed = walk(own, data, places, wide, _pass(progress, "logs in question"))
     told = places.told(passed, at).times(found.share or independent(passed))
     return Question(data, season, span, told, bent.about(levels.mean[0, :k]))
 
 
-def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
-    """Number of the span of each window (n,): each season in as many of about the same number of windows."""
-    each = max(SPANS // (int(season.max()) + 1), 1)
+def _spans(time: np.ndarray, season: np.ndarray, many: int) -> np.ndarray:
+    """Number of the span of each window (n,): of about so many, each season in as many of like numbers of windows."""
+    each = max(many // (int(season.max()) + 1), 1)
     span, first = np.zeros(len(time), dtype=int), 0
     for number in range(int(season.max()) + 1):
         mine = np.flatnonzero(season == number)
@@ -280,7 +285,9 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     told = asked.told.spread(found.levels.window).summed(asked.span, n)
     time = np.array([data.time[asked.span == k].mean() for k in range(n)])
     dated, name = all(log.dated for log in logs), ", ".join(log.name for log in logs)
-    date = tuple(f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d}" if dated else "" for t in time)
+    clock = "%Y-%m-%d" if np.ptp(time) > n * DAY else "%Y-%m-%d %H:%M"
+    begin = [float(data.time[asked.span == k].min()) for k in range(n)]
+    date = tuple(f"{datetime.fromtimestamp(t, UTC):{clock}}" if dated else f"{t:.4g} s" for t in begin)
     values = {s.name: np.zeros(n) for s in logs[0].sensors}
     campaign = Campaign.of(name, logs[0].sensors, values, np.arange(n), order=time, date=date, names=("",) * n)
     season = np.array([asked.season[asked.span == k][0] for k in range(n)])

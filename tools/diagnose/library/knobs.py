@@ -15,7 +15,7 @@ from ....model.parts.grey import GreyLoss
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Row, Size, Theta, Values
 from .entries import TABLE
-from .forms import FROM_THEN, PLACE, Course, since
+from .forms import FROM_THEN, ONE_PLACE, PLACE, Course, since
 from .sensors import KINDS, NAMES
 
 #: Bounds of a move, as multiples of what is usual.
@@ -57,8 +57,6 @@ class Knob:
         return (*self.scaled, *self.shifted)
 
 
-#: What the gain of an instrument is off by as a rule, and its standard deviation between machines.
-GAINS = {"torque": (0.03, 0.02), "speed": (0.02, 0.003), "power": (0.03, 0.02)}
 #: How a knob moves over the logs.
 WHENS = (
     Course("", 0.5, (), lambda theta, row: 1.0),
@@ -68,7 +66,7 @@ WHENS = (
 
 
 def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
-    """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move."""
+    """Knobs that have moved, as causes: forms for one or all knobs of a cause, and for each course of its move."""
     causes = dict.fromkeys(knob.cause for knob in found if knob.cause)
     return tuple(_cause([knob for knob in found if knob.cause == cause]) for cause in causes)
 
@@ -76,7 +74,10 @@ def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
 def _cause(own: Sequence[Knob]) -> Cause:
     first = own[0]
     name, doc = ("ln_factor", "logarithm of the factor") if first.unit == "1" else ("shift", "change")
-    forms = [_moved(knob, when, name, when.share / len(own)) for knob in own for when in WHENS]
+    ways: list[tuple[Sequence[Knob], float]] = [([knob], 1 / len(own)) for knob in own]
+    if len(own) > 1 and first.scaled:  # one of them, or all; errors of several instruments have nothing in common
+        ways = [(own, 1 - ONE_PLACE), *((one, ONE_PLACE * share) for one, share in ways)]
+    forms = [_moved(moving, when, name, when.share * share) for moving, share in ways for when in WHENS]
     size = Size(name, first.unit, doc, first.usual, -FARTHEST * first.usual, FARTHEST * first.usual)
     kind, said = KINDS.get(first.cause.split(".")[1]), TABLE.get(first.cause, {})
     exposes = said.get("exposes") or (kind.calibrate if kind else "")
@@ -84,11 +85,11 @@ def _cause(own: Sequence[Knob]) -> Cause:
     return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time", exposes=exposes, like=like)
 
 
-def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
+def _moved(own: Sequence[Knob], when: Course, size: str, weight: float) -> Form:
     def values(theta: Theta, row: Row) -> Values:
-        return {knob.name: theta[size] * when.at(theta, row)}
+        return {knob.name: theta[size] * when.at(theta, row) for knob in own}
 
-    name = ", ".join(filter(None, (knob.name, when.words)))
+    name = ", ".join(filter(None, (own[0].name if len(own) == 1 else "all of them", when.words)))
     return Form(name, weight, when.shapes, values=values, regime=FROM_THEN if when.shapes else {})
 
 
@@ -141,8 +142,8 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
             id = "" if s.checked else f"sensor.{s.kind}.offset"
             doc = f"The {kind.words} reads too high or too low."
             yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, s.offset_sd / 2, sensor=s.name)
-        elif s.kind in GAINS:
-            doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", GAINS[s.kind]
+        elif s.kind in TABLE["gains"]:
+            doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", TABLE["gains"][s.kind]
             id = "" if s.checked else f"sensor.{s.kind}.gain"
             yield Knob(f"{s.name}: gain", id, doc, "1", usual, sd, sensor=s.name, gain=True)
             if s.kind == "torque" and s.offset_sd:

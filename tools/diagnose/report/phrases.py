@@ -22,15 +22,9 @@ WORSE = 0.06
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
 #: How the part of a form's name begins that says where it acts, as the regime says with its numbers.
-LIMITED = ("above a", "below a", "from one test on", "from a test on")
-SCHEMES = {
-    "leave-one-operating-point": "each test left out in turn",
-    "leave-out-tests": "some of the tests left out in turn",
-    "leave-one-speed": "each speed left out in turn",
-    "leave-one-load": "each torque left out in turn",
-    "leave-one-oil": "each oil left out in turn",
-    "leave-out-spans": "spans of the logs left out in turn",
-}
+LIMITED = ("above a", "below a", "from one test on", "from a test on", "from one date on")
+#: Scheme of readings left out -> words.
+SCHEMES = TABLE["schemes"]
 #: How the meaning of a parameter begins that is a logarithm, and the name of one without a meaning.
 LOGARITHM = ("logarithm of ", "ln_")
 
@@ -134,7 +128,10 @@ def impact(found: Impact) -> str:
     more, sign = ("higher", 1) if found.value >= 0 else ("lower", -1)
     low, high = sorted(sign * v for v in found.ci95)
     value = with_unit(abs(found.value), found.unit, 2)
-    return f"{found.what} {value} {more} ({number(low, 2)} to {number(high, 2)})"
+    least, most = found.single or found.ci95
+    apart = min(-least, most) > high
+    ends = f"; {number(-least, 2)} lower to {number(most, 2)} higher at single points" if apart else ""
+    return f"{found.what} {value} {more} ({number(low, 2)} to {number(high, 2)}{ends})"
 
 
 def regime(found: Cause) -> str:
@@ -271,8 +268,10 @@ def doubt(findings: Findings) -> str:
             for channel, p in findings.played.items()
             if p.rms_extended > max((1 + WORSE) * p.rms_calibrated, fixed.get(channel) or 0.0)
         ]
+        sd = {c.name: c.repeat_sd or 1.0 for c in findings.channels}
+        more = {k: (p.rms_extended**2 - p.rms_calibrated**2) / sd.get(k, 1.0) ** 2 for k, p in findings.played.items()}
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
-        return f"{text} {useless}" if worse else ""
+        return f"{text} {useless}" if worse and sum(more.values()) > 0 else ""
     if found.rmse_after >= found.rmse_before:
         return f"On readings left out the extended rig predicts no better ({gain(found)}). {useless}"
     worse = [

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ...show.columns import cell_text
-from ..answer.channels import ENDINGS
+from ..answer.channels import KINDS
 from ..answer.findings import APART, Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
@@ -206,20 +206,13 @@ def sets(findings: Findings) -> list[Table]:
 
 
 #: Name in the template of the page -> its tables, in the order of the page.
-SECTIONS = {
-    "residuals": residuals,
-    "quality": quality,
-    "causes": causes,
-    "gains": gain,
-    "experiments": experiments,
-    "sets": sets,
-}
+SECTIONS = dict(residuals=residuals, quality=quality, causes=causes, gains=gain, experiments=experiments, sets=sets)
 
 
 def predictions_text(findings: Findings) -> str:
     """CSV text, a row a point: what each channel will show, calibrated without a cause and with the causes."""
     names = dict.fromkeys(name for p in findings.predictions for name in p.nominal)
-    ends = {c.name: ENDINGS[c.unit] for c in findings.channels if c.unit in ENDINGS}
+    ends = {c.name: KINDS[c.kind][3] for c in findings.channels if c.kind in KINDS}
     columns = [f"{name}_{model}{ends.get(name, '')}" for name in names for model in ("nominal", "extended")]
     lines = [",".join(map(cell_text, ["point", *columns]))]
     for p in findings.predictions:

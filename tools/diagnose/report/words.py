@@ -124,7 +124,8 @@ def _claim(findings: Findings) -> str:
         unlikely = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
         return f"{wrong}, and the data leave open what: {'; '.join(map(_probable, listed))}{unlikely}{maybe}."
     first = answers[0]
-    if limits := _at_bound(findings, first):
+    leading = (findings.cause(group[0]) for group in first.causes)
+    if limits := [c.id for c in leading if c is not None and c.parameters and c.parameters[0].at_bound]:
         return (
             f"{sentence(phrases.answer(first))} fits best ({phrases.percent(first.probability, first.mc_error)}), yet"
             f" only at the limit of the size that {names_of(limits)} can have: this is a pointer, not yet a finding."
@@ -178,12 +179,6 @@ def _left_open(findings: Findings, first: Answer) -> str:
 
 def _probable(answer: Answer) -> str:
     return f"{phrases.answer(answer)} ({phrases.percent(answer.probability, answer.mc_error)})"
-
-
-def _at_bound(findings: Findings, answer: Answer) -> list[str]:
-    """Causes of an answer whose size sits on its bound."""
-    found = [findings.cause(c) for group in answer.causes for c in group[:1]]
-    return [c.id for c in found if c is not None and c.parameters and c.parameters[0].at_bound]
 
 
 def _do(findings: Findings) -> str:
@@ -295,6 +290,10 @@ def _cannot_be(findings: Findings) -> str:
     out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named]
     if out:
         said.append(f"Found in 80 of 100 such campaigns at their usual size, and not here: {names_of(out, most=MOST)}.")
+    blind = {i.cause for i in findings.invisible}
+    faint = [c.id for c in findings.causes if c.usual is not None and c.id not in blind and not _seen(c)]
+    if faint and not named:
+        said.append(f"At their usual size not found in 80 of 100: {names_of(faint, 'or', FEW)}.")
     still_open = {c.id for c in findings.causes if c.probability >= RULED_OUT} - named
     for group in findings.sets:
         first, *alike = group.causes
@@ -303,16 +302,18 @@ def _cannot_be(findings: Findings) -> str:
             by_size = " but by how usual the sizes are" if findings.verdict == "explained" else ""
             said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}{by_size}.")
     if findings.invisible:
-        blind = names_of((i.cause for i in findings.invisible), "or", FEW)
-        said.append(f"These data cannot show {blind}.")
+        said.append(f"These data cannot show {names_of((i.cause for i in findings.invisible), 'or', FEW)}.")
     return " ".join(said)
 
 
+def _seen(cause: Cause) -> bool:
+    return cause.detectable is not None and cause.usual is not None and cause.detectable <= cause.usual
+
+
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
-    seen = cause.detectable is not None and cause.usual is not None and cause.detectable <= cause.usual
     alike = any(cause.id in s.causes and s.distance < APART for s in findings.sets)
     blind = any(cause.id == i.cause for i in findings.invisible)
-    return seen and not alike and not blind and cause.probability < RULED_OUT
+    return _seen(cause) and not alike and not blind and cause.probability < RULED_OUT
 
 
 def _data(findings: Findings) -> tuple[str, ...]:
