@@ -194,9 +194,9 @@ class Scenario:
 
     def driven_by(self, names: Iterable[str]) -> Scenario:
         """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
-        return self.driven(self.drive_by(names))
+        return self.driven(self.deduced_drive(names))
 
-    def drive_by(self, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    def deduced_drive(self, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
         """The same as a drive; shafts that turn apart from those named keep what the rig says."""
         shafts = self.shaft_paths()
         named = [name for name in names if name in shafts]

@@ -49,10 +49,14 @@ class Schedule:
         """Times at even steps from its start on, and its end [s]."""
         return np.unique(np.append(np.arange(self.start, self.stop, step), self.stop))
 
+    @property
+    def jumps(self) -> np.ndarray:
+        """The points before jumps: at each the time is given twice."""
+        return np.flatnonzero(np.diff(self.time) == 0)
+
     def stretches(self) -> list[slice]:
         """The points between jumps: per stretch the slice of points over which all inputs are continuous."""
-        jumps = np.flatnonzero(np.diff(self.time) == 0)
-        edges = [0, *(jumps + 1), len(self.time)]
+        edges = [0, *(self.jumps + 1), len(self.time)]
         pairs = [(a, b) for a, b in pairwise(edges) if self.time[b - 1] > self.time[a]]
         return [slice(int(a), int(b)) for a, b in pairs]
 

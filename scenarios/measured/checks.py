@@ -101,27 +101,47 @@ def same_as_reference(campaign: Campaign, reference: Campaign) -> list[str]:
     return []
 
 
-def not_in_reference(campaign: Campaign, reference: Campaign) -> list[str]:
-    """Warnings of what a campaign compares and its reference lacks, and of quite other speeds and torques.
+def beside_reference(campaign: Campaign, reference: Campaign) -> list[str]:
+    """Warnings of what a campaign and its reference do not have alike.
 
     Args:
         campaign: readings of the machine
         reference: readings of it when healthy
     """
-    lacking = [
+    return [*not_in_reference(campaign, reference), *unlike_reference(campaign, reference)]
+
+
+def not_in_reference(campaign: Campaign, reference: Campaign) -> list[str]:
+    """Warnings of what a campaign compares and its reference lacks.
+
+    Args:
+        campaign: readings of the machine
+        reference: readings of it when healthy
+    """
+    return [
         f"{reference.name} lacks {sensor.column}, which {campaign.name} has: what it always is off by is not"
         " calibrated, and may be taken for a fault. Give a reference with it."
         for sensor in campaign.read
         if sensor.name not in reference.values
     ]
-    return lacking + [
-        f"{sensor.column} is about {format_value(sensor, own)} in {campaign.name}, {format_value(sensor, other)} in"
-        f" {reference.name}. Check that the units of both are what they say."
-        for sensor in campaign.given
-        if sensor.kind in ("speed", "torque") and sensor.name in reference.values
-        for own, other in [[float(np.nanmedian(np.abs(c.values[sensor.name]))) for c in (campaign, reference)]]
-        if not 1 / UNLIKE <= own / (other or 1e-9) <= UNLIKE
-    ]
+
+
+def unlike_reference(campaign: Campaign, reference: Campaign) -> list[str]:
+    """Warnings of speeds and torques of quite another size than those of the reference.
+
+    Args:
+        campaign: readings of the machine
+        reference: readings of it when healthy
+    """
+    found = []
+    for s in (s for s in campaign.given if s.kind in ("speed", "torque") and s.name in reference.values):
+        own, other = (float(np.nanmedian(np.abs(c.values[s.name]))) for c in (campaign, reference))
+        if not 1 / UNLIKE <= own / (other or 1e-9) <= UNLIKE:
+            found.append(
+                f"{s.column} is about {format_value(s, own)} in {campaign.name}, {format_value(s, other)} in"
+                f" {reference.name}. Check that the units of both are what they say."
+            )
+    return found
 
 
 def outlying(campaign: Campaign, points: Campaign) -> list[str]:

@@ -38,8 +38,8 @@ def test_a_shaft_that_turns_apart_keeps_its_drive():
         ("motor.flange", "wheel.flange"),
     )
     apart = replace(scenario, spec=scenario.spec.with_parts(parts, [net])).driven({**scenario.given, "motor": ("w",)})
-    assert apart.drive_by(["input.w"]) == {**scenario.drive_by(["input.w"]), "motor": ("w",)}
-    assert apart.drive_by(["motor.tau"]) == {**scenario.given, "motor": ("tau",)}
+    assert apart.deduced_drive(["input.w"]) == {**scenario.deduced_drive(["input.w"]), "motor": ("w",)}
+    assert apart.deduced_drive(["motor.tau"]) == {**scenario.given, "motor": ("tau",)}
     flat = flat_of(adjust(apart, ["input.tau=50 N.m", "output.tau=-600 N.m"]))
     assert [q.name for q in flat.states if q.name.endswith(".w")] == ["rotor.w"]
 

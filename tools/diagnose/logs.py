@@ -70,7 +70,7 @@ class LogDiagnosis:
 
     def asked(self, cause: Cause) -> str:
         """As what logs were asked about a cause: itself, or of those like it the one that they speak for most."""
-        alike = [of.cause.id for of in self.found.formulas if cause.like and of.cause.like == cause.like]
+        alike = dict.fromkeys(of.cause.id for of in self.found.formulas if of.cause.like == cause.like != "")
         known = cause.id in self.causes or not alike
         return cause.id if known else max(alike, key=lambda id: self.found.log_bayes_factor([id]))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from ...model.errors import DataError, Problems, suggestion
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
-from ...scenarios.measured.checks import invisible, not_in_reference, outlying, same_as_reference, too_small
+from ...scenarios.measured.checks import beside_reference, invisible, outlying, same_as_reference, too_small
 from ...scenarios.measured.condense import condensed
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.series import read_samples, series_of
@@ -96,7 +96,7 @@ class Inputs:
         tables += [c.series.warnings for c in (self.data, self.reference) if c is not None and c.series is not None]
         if self.data is not None and self.reference is not None:
             tables += [(ALONE,)] if self.data.series and not self.reference.series else []
-            tables.append(tuple(not_in_reference(self.data, self.reference)))
+            tables.append(tuple(beside_reference(self.data, self.reference)))
         if self.data is not None and self.points is not None:
             tables.append(tuple(outlying(self.data, self.points)))
         told = dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found)

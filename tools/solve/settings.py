@@ -58,7 +58,7 @@ def adjust(
     problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
-    driven = scenario.drive_by(ends) if drive is None else drive
+    driven = scenario.deduced_drive(ends) if drive is None else drive
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)

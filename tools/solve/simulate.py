@@ -270,7 +270,7 @@ def finer(schedule: Schedule, step: float, least: float = 0.0) -> int:
 def rows_shown(time: np.ndarray, schedule: Schedule, step: float) -> np.ndarray:
     """Which rows (n,) are a step apart, at a jump or the last one."""
     place = (time - schedule.start) / step
-    at_jump = np.isin(time, schedule.time[1:][np.diff(schedule.time) == 0])
+    at_jump = np.isin(time, schedule.time[schedule.jumps])
     return np.asarray((np.abs(place - place.round()) < ROUND_OFF) | at_jump | (time == time[-1]))
 
 

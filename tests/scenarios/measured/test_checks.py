@@ -6,7 +6,13 @@ from dataclasses import replace
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.scenarios.measured.checks import not_in_reference, outlying, same_as_reference, too_small
+from gearheat.scenarios.measured.checks import (
+    not_in_reference,
+    outlying,
+    same_as_reference,
+    too_small,
+    unlike_reference,
+)
 from made_tables import made
 
 
@@ -138,7 +144,8 @@ def test_a_reference_without_a_compared_channel_warns(read, helical):
     assert [text.partition(",")[0] for text in not_in_reference(whole, less)] == ["data.csv lacks T_wall_C"]
     speed = next(s.name for s in whole.given if s.kind == "speed")
     slip = replace(whole, values={**whole.values, speed: whole.values[speed] / 60})
-    (said,) = not_in_reference(slip, whole)
+    (said,) = unlike_reference(slip, whole)
+    assert not unlike_reference(whole, whole)
     assert "in data.csv, 1015 rpm in data.csv. Check that the units of both are what they say." in said
 
 

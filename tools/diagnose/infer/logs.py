@@ -26,6 +26,8 @@ from .problem import Look, Problem
 from .walk import PASSES, Places, curves, independent, suit, walk
 from .weigh import Progress
 
+#: A day [s].
+DAY = 86400.0
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05
 #: Of states that are no body's.
@@ -42,7 +44,7 @@ FEW = 5
 #: Of the logarithm of the scatter of what the filter says, which healthy logs have told.
 STIFF = 0.02
 #: Time from the last healthy logs to those in question, where it is no calendar's [s].
-LATER = 14 * 86400.0
+LATER = 14 * DAY
 #: How losses, heat paths and instruments follow a feature of the duty otherwise than their laws say, as a share of how
 #: machines differ,
 LAW = 0.15
@@ -55,10 +57,8 @@ FOLLOWED = (1.0, 0.3, 0.1, 0.03)
 REFUTED = 2.0
 #: How windows of a season differ, as shares of how machines do: chosen with them.
 WANDERED = (0.1, 0.03, 0.01)
-#: A day [s].
-DAY = 86400.0
 #: Length of a year in time that is no calendar's [s].
-YEAR = 365.25 * 86400.0
+YEAR = 365.25 * DAY
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +146,8 @@ def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
     """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
     if not dated:
         return np.asarray(np.floor((time - time.min()) / (YEAR / 4)), dtype=int)
-    return np.array([4 * (d := datetime.fromtimestamp(t, UTC)).year + (d.month - 1) // 3 for t in time])
+    dates = [datetime.fromtimestamp(t, UTC) for t in time]
+    return np.array([4 * d.year + (d.month - 1) // 3 for d in dates])
 
 
 def fleet(

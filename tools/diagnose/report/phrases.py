@@ -269,9 +269,9 @@ def doubt(findings: Findings) -> str:
             if p.rms_extended > max((1 + WORSE) * p.rms_calibrated, fixed.get(channel) or 0.0)
         ]
         sd = {c.name: c.repeat_sd or 1.0 for c in findings.channels}
-        more = {k: (p.rms_extended**2 - p.rms_calibrated**2) / sd.get(k, 1.0) ** 2 for k, p in findings.played.items()}
+        more = sum((p.rms_extended**2 - p.rms_calibrated**2) / sd.get(k, 1.0) ** 2 for k, p in findings.played.items())
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
-        return f"{text} {useless}" if worse and sum(more.values()) > 0 else ""
+        return f"{text} {useless}" if worse and more > 0 else ""
     if found.rmse_after >= found.rmse_before:
         return f"On readings left out the extended rig predicts no better ({gain(found)}). {useless}"
     worse = [

@@ -287,10 +287,10 @@ def _cannot_be(findings: Findings) -> str:
     """Causes that would show and do not; those that these data cannot tell from the answer, or cannot show."""
     said = []
     named = findings.named
-    out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named]
+    blind = {i.cause for i in findings.invisible}
+    out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named | blind]
     if out:
         said.append(f"Found in 80 of 100 such campaigns at their usual size, and not here: {names_of(out, most=MOST)}.")
-    blind = {i.cause for i in findings.invisible}
     faint = [c.id for c in findings.causes if c.usual is not None and c.id not in blind and not _seen(c)]
     if faint and not named:
         said.append(f"At their usual size not found in 80 of 100: {names_of(faint, 'or', FEW)}.")
@@ -312,8 +312,7 @@ def _seen(cause: Cause) -> bool:
 
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
     alike = any(cause.id in s.causes and s.distance < APART for s in findings.sets)
-    blind = any(cause.id == i.cause for i in findings.invisible)
-    return _seen(cause) and not alike and not blind and cause.probability < RULED_OUT
+    return _seen(cause) and not alike and cause.probability < RULED_OUT
 
 
 def _data(findings: Findings) -> tuple[str, ...]:
