@@ -237,3 +237,5 @@ def test_a_heat_a_flow_and_the_air_have_instruments_of_their_own(planetary):
     assert {s.name: (s.kind, s.role) for s in sensors} == {"Q": ("heat", "read"), "v": ("air_speed", "given")}
     found = {cause.id: cause for cause in causes(Context(planetary.roles, planetary.ranges, sensors))}
     assert found["sensor.heat.gain"].size.high >= 0.5 and "sensor.air_speed.gain" in found
+    in_logs = {cause.id for cause in moves(knobs(planetary.roles, sensors, 100.0))}
+    assert in_logs >= {"sensor.heat.gain", "sensor.air_speed.gain"}

@@ -25,7 +25,7 @@ class Channel(Model):
 
     name: str = Field(description="stable name, the key of all tables by channel")
     column: str = Field(default="", description="column of the user's file")
-    kind: str = Field(default="", description="oil_temp, wall_temp, ambient, torque, speed or power")
+    kind: str = Field(default="", description="kind of sensor, as a card names it")
     role: Literal["given", "read"] = "read"
     unit: str = Field(description="of its readings in this result: degC, N.m, rpm, W")
     repeat_sd: Number | None = Field(default=None, description="scatter from reading to reading by the card")

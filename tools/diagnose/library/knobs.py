@@ -142,8 +142,8 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
             id = "" if s.checked else f"sensor.{s.kind}.offset"
             doc = f"The {kind.words} reads too high or too low."
             yield Knob(f"{s.name}: offset", NAMES.get(id, id), doc, "K", 2.0, 0.7, s.offset_sd / 2, sensor=s.name)
-        elif s.kind in TABLE["gains"]:
-            doc, (usual, sd) = f"The {s.kind} reading is wrong by a share of itself.", TABLE["gains"][s.kind]
+        elif kind:
+            doc, (usual, sd) = f"The {kind.words} is wrong by a share of what it shows.", TABLE["gains"][s.kind]
             id = "" if s.checked else f"sensor.{s.kind}.gain"
             yield Knob(f"{s.name}: gain", id, doc, "1", usual, sd, sensor=s.name, gain=True)
             if s.kind == "torque" and s.offset_sd:
