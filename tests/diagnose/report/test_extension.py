@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.machines.spec import PartSpec
+from gearheat.model.parts.free_form import step
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import DIAGNOSED
 from gearheat.tools.diagnose.library.cause import Form, Row, Theta, Values
@@ -98,6 +99,8 @@ def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
         Form("T_oil", shown=lambda theta, row, true: {"T_oil": true["T_oil"] + theta["G"]}),
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * (1 + theta["G"] * row.order)}),
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-6 * (row.sensors["T_amb"] - 200)}),
+        Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * (1 + theta["G"] * step(row.rise - 90))}),
+        Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * (1 + theta["G"] * step(290 - row.sensors["T_amb"]))}),
         Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * theta["G"]}, spread="test"),
         Form("anew with each mounting", spread="mounting"),
     ],

@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 
 from ....model.machines.roles import takes_power
@@ -25,6 +26,7 @@ from ..infer.fit import Vector
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Form, Row, Theta
 from ..library.check import parameters
+from ..model.formula import FEATURES
 from ..setting import Setting
 from . import phrases
 from .phrases import name_of
@@ -179,10 +181,10 @@ def _changed(form: Form, theta: Theta, base: Mapping[str, float]) -> dict[str, f
     """Values that a form changes in every test alike; None where it depends on the test or changes none."""
     if form.values is None or form.spread:
         return None
-    one, other = defaultdict[str, float](lambda: 300.0), defaultdict[str, float](lambda: 320.0)  # of any sensor
-    rows = (Row(base, one), Row(base, other, 1.0, -1.0, 55.0, 0.7, 1.0))
-    first, second = ({path: float(v) for path, v in form.values(theta, row).items()} for row in rows)
-    return first if first == second else None
+    features = ca.vertsplit(ca.SX.sym("feature", len(FEATURES)))
+    found = form.values(theta, Row(base, defaultdict(lambda: ca.SX.sym("reading")), *features))
+    alike = not ca.symvar(ca.SX(ca.vertcat(*found.values())))
+    return {path: float(value) for path, value in found.items()} if alike else None
 
 
 def _names(parts: Sequence[PartSpec], taken: set[str]) -> dict[str, str]:
