@@ -16,7 +16,7 @@ from ..infer.screen import Screen
 from ..model.entries import Seen
 from ..model.noise import terms
 from ..model.observe import Observed
-from . import findings
+from . import channels, findings
 from .experiments import Check, Experiment, build_tests
 
 Pair = tuple[str, str]
@@ -187,10 +187,12 @@ def _run(
 def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.ndarray:
     """Reading less truth (n, k) per half width of each candidate, where a sensor is checked after the campaign."""
     n = len(check.true)
-    sensors = {s.name: np.full(n, float(np.mean(o.sensors[s.name]))) for s in o.campaign.sensors}
-    sensors[check.sensor] = np.array(check.true)
+    alike = channels.unit(o.campaign.sensor(check.sensor))  # all thermometers are in one bath
+    means = {s.name: np.mean(o.sensors[s.name]) for s in o.campaign.sensors if channels.unit(s) != alike}
+    sensors = {s.name: np.full(n, means.get(s.name, check.true)) for s in o.campaign.sensors}
     reads = {s.name: sensors[s.name] for s in o.read}
-    features = np.tile(np.array([1.0, 1.0, 0.0, 0.5, 0.0, 3600.0])[:, None], n)
+    features = np.tile(o.features.mean(axis=1)[:, None], n)
+    features[0] = 1.0  # behind the campaign
     found = np.zeros((n, len(candidates)))
     for k, c in enumerate(candidates):
         t = np.r_[0.0, c.t[1:]]
