@@ -482,6 +482,18 @@ def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting
         assert (said is None) == (not s.kind.endswith("_temp"))
 
 
+def test_a_rig_is_played_with_its_inputs_as_found(clean: tuple[Setting, Found]) -> None:
+    """A room that reads 6 K too high is no fault of a rig that cools less."""
+    setting, problem, null = clean[0], copy(clean[1].problem), clean[1].null
+    formulas = [next(f for f in setting.formulas if f.cause.id == c) for c in ("cooling.air", "sensor.ambient.bias")]
+    acting = [Acting(f, np.r_[t, np.zeros(f.size - 1)]) for f, t in zip(formulas, (-1.0, 4.0), strict=True)]
+    look, problem.data = problem.look(null.look.z, acting), copy(problem.data)
+    problem.data.measured = look.shown[problem.own]
+    played = estimate.replay(problem, null, SimpleNamespace(fit=SimpleNamespace(look=look)))  # type: ignore[arg-type]
+    assert set(played) == {s.name for s in problem.data.read}
+    assert all(p.rms_extended < 1e-6 < 1.0 < p.rms_calibrated for p in played.values()), played
+
+
 def test_a_loss_that_is_all_gone_is_at_its_bound(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:
     setting, found = wrong
     formula = next(f for f in setting.formulas if f.cause.id == "losses.seal_drag" and f.form.name == "")

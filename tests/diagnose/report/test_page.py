@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
-from gearheat.tools.diagnose.answer.evidence import Rows
+from gearheat.tools.diagnose.answer.evidence import DataQuality, NuisanceOff, Rows
 from gearheat.tools.diagnose.api import Diagnosis
 from gearheat.tools.diagnose.report.page import _bars, render
 from pages import problems_of, words_that_collide
@@ -42,6 +42,13 @@ def test_the_order_of_the_page() -> None:
     places = [text.find(words) for words in order]
     assert -1 not in places
     assert places == sorted(places)
+
+
+def test_a_value_that_the_verdict_tells_is_not_denied_below() -> None:
+    off = NuisanceOff(name="mesh friction", z=3.2, factor=1.38, paths=("gear_set.k_mu",))
+    text = _text(render(clean(data_quality=DataQuality(nuisances=(off,)))))
+    assert "only with values far from those of its file: mesh friction" in text
+    assert "No gross reading" in text and "no value of the rig" not in text
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -258,23 +258,19 @@ def find_detectable(found: Found) -> dict[str, float]:
 
 
 def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Played]:
-    """Root mean square that the rig leaves when it is played over the data, by sensor.
+    """Root mean square that the rig leaves when it is played over the data, by sensor, with faults of inputs as found.
 
-    The extended rig holds what is a matter of the machine; nothing where nothing is. Sensors that a hypothesis calls
-    wrong are left out.
+    Nothing where no cause is a matter of the machine. Sensors that a hypothesis calls wrong are left out.
     """
-    o, own = problem.data, problem.own
-    acting = h.fit.look.acting
-    machine = [a for a in acting if a.formula.paths and not (a.formula.given or a.formula.read or a.formula.paced)]
+    o, own, acting = problem.data, problem.own, h.fit.look.acting
     wrong = {name for a in acting for name in a.formula.read}
-    if not machine:
+    if not any(a.formula.paths for a in acting):
         return {}
-    extended = problem.shown(h.fit.look, machine)[own]
     found = {}
     for _, s, mine in channels.compared(o):
         rows = np.setdiff1d(np.flatnonzero(mine), problem.entries_aside)
-        left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
-        if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
+        left = [o.measured[rows] - fit.look.shown[own][rows] for fit in (null, h.fit)]
+        if len(rows) and s.name not in wrong:
             before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)
             unit = channels.unit_of_difference(s)
             found[s.name] = findings.Played(rms_calibrated=before, rms_extended=after, unit=unit)
