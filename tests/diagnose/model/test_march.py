@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
@@ -218,6 +219,17 @@ def test_a_steady_state_at_the_steep_middle_of_a_thermostat_is_met(tmp_path: Pat
     plant = Plant(with_additions(scenario.spec, (), ()), ("housing.C",), given, shown)
     found = Observed(plant, data, (), {}, {}).shown_by(np.zeros(0), ())
     assert found == pytest.approx(np.repeat([state[name][0] for name in shown], 2), abs=1e-3)
+
+
+def test_a_machine_of_which_nothing_is_given_runs_as_its_file_has_it(tmp_path: Path) -> None:
+    """An oil thermometer may be all there is."""
+    text = (FOLDER.parent / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
+    (rig := tmp_path / "mine.toml").write_text(re.sub(r"\[sensors\][^[]*", '[sensors]\nT_oil_C = "oil.T"\n\n', text))
+    (data := tmp_path / "data.csv").write_text("T_oil_C\n50.1\n50.3\n49.8\n50.0\n50.2\n49.9\n")
+    inputs = read(Request(str(rig), data))
+    problem = setting(inputs.scenario, inputs.card, inputs.data).problem
+    look = problem.look(np.zeros(problem.nz))
+    assert np.ptp(look.shown) < 1e-3 and np.isfinite(problem.noise(look).covariance).all()
 
 
 def test_a_steady_state_is_the_one_that_warming_up_comes_to(tmp_path, monkeypatch) -> None:

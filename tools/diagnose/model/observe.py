@@ -259,7 +259,7 @@ class _Look:
         for own, (_, changes) in zip(p[1:], self.settings, strict=True):
             for path, bits in (item for part in changes.values() for item in part):
                 own[:, plant.place[path]] = np.frombuffer(bits)
-        truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
+        truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given]).reshape(-1, self.n)
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.name in plant.flat.bodies for q in plant.flat.states]] = start[:, None]
@@ -340,7 +340,7 @@ class _Look:
         found = self._run({k for _, k, _ in entries})
         test, run = o.test, o.run
         local = found.local[run, :, :, o.reads]
-        signs = np.array([o.signs[s.name] for s in o.given])
+        signs = np.array([o.signs[s.name] for s in o.given]).reshape(-1, self.n)
         by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
         own = found.by[run, :, :, o.reads]  # p, H, knobs + 1, shown
         tried = found.tried[run, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
