@@ -20,7 +20,7 @@ from gearheat.tools.diagnose.answer.findings import APART, UNEXPLAINED
 from gearheat.tools.diagnose.answer.pictures import pictures
 from gearheat.tools.diagnose.answer.predict import simulate
 from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, gross_readings, scatters
-from gearheat.tools.diagnose.infer.fit import Vector
+from gearheat.tools.diagnose.infer.fit import Begin, Vector, fitted
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Acting, Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import Options, weigh
@@ -99,8 +99,26 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     found = weigh(problem, clean[1].formulas)
     assert found.problem.aside == {bad}
     assert decide(found).verdict == "consistent"
-    ((_, size_sd),) = distances(found.problem, found.null)
+    ((_, size_sd, error),) = distances(found.problem, found.null)
     assert size_sd == pytest.approx(20, rel=0.3)
+    assert error == pytest.approx(20 * oil.repeat_sd, rel=0.3)
+
+
+def test_what_others_say_of_a_gross_reading_holds_the_zero_of_its_instrument(clean: tuple[Setting, Found]) -> None:
+    """A thermometer of a wide tolerance that reads 4 K too high, and once 4 K less."""
+    sound, row = clean[1].problem, 5
+    sensors = tuple(replace(s, offset_sd=3.0) if s.kind == "oil_temp" else s for s in sound.data.campaign.sensors)
+    oil = next(s for s in sensors if s.kind == "oil_temp")
+    values = {**sound.data.campaign.values}
+    values[oil.name] = values[oil.name] + 4.0 * (np.arange(sound.data.campaign.n) != row)
+    data = replace(sound.data.campaign, sensors=sensors, values=values)
+    problem = Problem([sound.data.another(data)], sound.day_sd)
+    bad = Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.kind == 0))[0]))
+    problem = problem.without(frozenset({bad}))
+    h = SimpleNamespace(fit=fitted(problem, (), Begin(np.zeros(problem.nz))))
+    (one,) = gross_readings(replace(clean[1], problem=problem), h)  # type: ignore[arg-type]
+    assert one.channel == oil.name and one.shown is not None
+    assert one.expected == pytest.approx(one.shown + 4.0, abs=1.2)
 
 
 def test_a_wrong_speed_is_among_the_given_readings_of_its_row_that_explain_it(clean: tuple[Setting, Found]) -> None:

@@ -42,6 +42,8 @@ def test_tests_of_one_running_order_stay_together(wrong: tuple[Setting, Found]) 
     halves = replace(campaign, order=np.repeat([1.0, 2.0], campaign.n_tests // 2))
     found = group_rows(halves)["running order"]
     assert {name: len(rows) for name, rows in found.items()} == {"1 to 1": campaign.n // 2, "2 to 2": campaign.n // 2}
+    days = group_rows(replace(campaign, order=20240101.0 + np.arange(campaign.n_tests)))["running order"]
+    assert next(iter(days)) == "20240101 to 20240104" and sum(map(len, days.values())) == campaign.n
 
 
 def test_a_row_that_cannot_be_run_is_named_by_its_line(
@@ -99,6 +101,20 @@ def test_rivals_are_exact_where_they_hold() -> None:
     X = np.random.default_rng(1).normal(size=(20, 3))
     left = gain.fitted(np.column_stack([np.ones(20), X]), 2.0 + X @ [1.0, -2.0, 0.5], kept, 1e-9)
     assert np.abs(left).max() < 1e-6
+
+
+def test_constant_cooling_needs_the_power_that_passes(wrong: tuple[Setting, Found]) -> None:
+    """A second torque is no factor of it, and a speed alone is none."""
+    o = copy(wrong[1].problem.data)
+    known = {s.kind: s for s in o.given}
+    rows, kept, power = np.arange(16), np.arange(16) % 4 > 0, o.sensors["n_input"] * o.sensors["T_output"]
+    o.campaign = replace(o.campaign, values=o.campaign.values | {"T_oil": o.sensors["T_amb"] + power / power.max()})
+    two = (*o.given, replace(known["torque"], name="T_second"))
+    for given, says in ((two, True), ((known["speed"], known["ambient"]), False)):
+        o.sensors = o.sensors | {"T_second": np.linspace(1.0, 2.0, 16)}
+        o.campaign, o.given = replace(o.campaign, sensors=(*given, *o.read)), given
+        left = gain.constant_cooling(o, 0, rows, kept)
+        assert (left is not None and np.abs(left).max() < 1e-9) == says
 
 
 def test_statistics_say_nothing_of_a_channel_with_a_single_reading(wrong: tuple[Setting, Found]) -> None:

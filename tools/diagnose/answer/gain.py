@@ -205,11 +205,12 @@ def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarra
 
     None for other readings, which nothing cools, and where no power is given.
     """
-    passing = [s for s in o.given if s.kind in ("speed", "torque", "power")]
-    if not o.read[sensor].kind.endswith("_temp") or not passing:
+    power, *passing = (o.campaign.driving(kind) for kind in ("power", "speed", "torque"))
+    passing = [power] if power else passing
+    if not o.read[sensor].kind.endswith("_temp") or None in passing:
         return None
-    power = np.prod([np.abs(o.sensors[s.name]) for s in passing], axis=0)
-    return fitted(power[rows, None] / max(float(np.abs(power).max()), 1e-300), target(o, sensor, rows), kept, 0.0)
+    passed = np.prod([np.abs(o.sensors[s.name]) for s in passing if s], axis=0)
+    return fitted(passed[rows, None] / max(float(passed.max()), 1e-300), target(o, sensor, rows), kept, 0.0)
 
 
 def linear(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray:

@@ -54,11 +54,11 @@ def check_data(found: Found, h: Hypothesis) -> DataQuality:
 def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     """All readings that were set aside, by what a hypothesis says of them."""
     problem, told = found.problem, []
-    for aside, size_sd in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
+    for aside, size_sd, error in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
         o, row, name = problem.source(aside)
         campaign, s, expected = o.campaign, o.campaign.sensor(name), None
         if not aside.sensor:
-            row, expected = int(o.row[row]), float(channels.in_unit(s, h.fit.look.shown[aside.number]))
+            row, expected = int(o.row[row]), float(channels.in_unit(s, problem.measured[aside.number] - error))
         line = int(campaign.lines[row])
         told.append(
             GrossReading(
@@ -90,15 +90,15 @@ def explain_as_well(problem: Problem, fit: Fit, aside: Aside) -> tuple[str, ...]
     return tuple(name for name in given if name != aside.sensor and left[name] < left[aside.sensor] + AS_WELL)
 
 
-def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
-    """How far each reading that is set aside lies from what the others say, in standard deviations of that."""
+def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float, float]]:
+    """How far each reading set aside lies from what the others say: in standard deviations; of compared ones in SI."""
     white, e = fit.linear(problem)
     inverse, a, found = white.inverse, white.turned(e), []
     for aside in sorted(problem.aside):
         c = problem.far(aside, fit.look).effects[:, 0] / problem.FAR
-        length = c @ inverse @ c
-        own = (c @ a) / np.sqrt(length * max(1 - problem.FAR**2 * length, 1e-9))
-        found.append((aside, float(own)))
+        length, along = c @ inverse @ c, c @ a  # c of a compared reading: its own standard deviation, and zeros
+        own = along / np.sqrt(length * max(1 - problem.FAR**2 * length, 1e-9))
+        found.append((aside, float(own), float(along / length * c.sum())))
     return found
 
 
@@ -257,7 +257,7 @@ def group_rows(campaign: Campaign) -> dict[str, dict[str, np.ndarray]]:
         groups[quantity] = {} if sensor is None else _along(campaign, sensor)
     parts, order = np.unique(campaign.order), campaign.order[campaign.test]
     quarters = np.array_split(parts, min(QUARTERS, len(parts)))
-    groups["running order"] = {f"{q[0]:g} to {q[-1]:g}": np.flatnonzero(np.isin(order, q)) for q in quarters}
+    groups["running order"] = {f"{q[0]:.10g} to {q[-1]:.10g}": np.flatnonzero(np.isin(order, q)) for q in quarters}
     return {quantity: found for quantity, found in groups.items() if len(found) > 1}
 
 
