@@ -3,11 +3,24 @@
 import re
 
 import pytest
-from fabricated_findings import AIR, CHURNING, KINDS, OFFSET, ambiguous, cause, clean, explained, spoiled, unexplained
+from fabricated_findings import (
+    AIR,
+    CHURNING,
+    KINDS,
+    OFFSET,
+    ambiguous,
+    cause,
+    clean,
+    explained,
+    findings,
+    spoiled,
+    unexplained,
+)
 from gearheat.tools.diagnose.answer.evidence import DataQuality, Estimate, NuisanceOff, ResidualMean
 from gearheat.tools.diagnose.answer.findings import (
     Alarm,
     Answer,
+    Cause,
     CauseSet,
     Channel,
     FormShare,
@@ -18,7 +31,7 @@ from gearheat.tools.diagnose.answer.findings import (
     RemainderChannel,
     Said,
 )
-from gearheat.tools.diagnose.report import phrases
+from gearheat.tools.diagnose.report import phrases, tables
 from gearheat.tools.diagnose.report.page import render
 from gearheat.tools.diagnose.report.phrases import name_of, names_of
 from gearheat.tools.diagnose.report.screen import text
@@ -125,6 +138,16 @@ def test_a_value_far_from_its_file_is_in_the_verdict_of_clean_data() -> None:
     )
     assert "Nothing" not in said.do
     assert said.do.startswith("Check these values of the rig")
+
+
+def test_no_smallest_size_is_told_of_a_scatter() -> None:
+    """No design judges it; that it was found says how large it is."""
+    walk = Cause(id="sensor.oil_temp.random_walk", probability=0.0, usual=0.6, unit="K")
+    quiet = (Hypothesis(causes=(), probability=0.95),)
+    found = findings("consistent", hypotheses=quiet, causes=(cause(AIR, 0.0), walk))
+    (smallest,) = (t for t in tables.sets(found) if t.title.startswith("Smallest"))
+    assert [row[0] for row in smallest.rows] == ["cooling by the air"]
+    assert "wandering" not in found.says.cannot_be
 
 
 def test_nothing_and_something_never_both_have_more_than_half() -> None:

@@ -190,8 +190,7 @@ def sets(findings: Findings) -> list[Table]:
     alike = [(said, sigma(s.distance), s.reason) for said, s in pairs]
     smallest = [
         (name_of(c.id), *(with_unit(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
-        for c in findings.causes
-        if c.usual is not None and any(other.detectable is not None for other in findings.causes)
+        for c in filter(None, (findings.cause(i.cause) for i in findings.isolability))  # not of scatters
     ]
     blind = [(name_of(i.cause), i.reason) for i in findings.invisible]
     note = "Distance from the nearest in standard deviations."
