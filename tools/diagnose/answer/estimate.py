@@ -271,7 +271,6 @@ def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Pla
         rows = np.setdiff1d(np.flatnonzero(mine), problem.entries_aside)
         left = [o.measured[rows] - fit.look.shown[own][rows] for fit in (null, h.fit)]
         if len(rows) and s.name not in wrong:
-            before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)
-            unit = channels.unit_of_difference(s)
-            found[s.name] = findings.Played(rms_calibrated=before, rms_extended=after, unit=unit)
+            a, b = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)
+            found[s.name] = findings.Played(rms_calibrated=a, rms_extended=b, unit=channels.unit_of_difference(s))
     return found
