@@ -24,6 +24,7 @@ from gearheat.tools.diagnose.answer.findings import (
     CauseSet,
     Channel,
     FormShare,
+    Gain,
     Hypothesis,
     Impact,
     Played,
@@ -277,6 +278,14 @@ def test_readings_left_out_say_whether_the_extended_rig_is_used() -> None:
     speeds = explained().gain_grouped[0].model_copy(update={"rmse_after": 2.8})
     said = phrases.doubt(explained(gain_grouped=(speeds,)))
     assert "no better (each speed left out in turn 2.5 before, 2.8 K after): there do not use the extended rig" in said
+
+
+def test_the_rig_that_is_written_is_the_one_that_was_scored() -> None:
+    """It holds the likeliest set alone, which may be worse than the mean of all."""
+    gain = explained().gain
+    assert gain is not None
+    alone = gain.model_copy(update={"leading": Gain.Both(without=2.5, with_=2.4)})
+    assert "predicts no better (T_oil: 2.3 before, 2.5 K after)" in explained(gain=alone).says.do
 
 
 def test_plain_statistics_that_are_better_are_told() -> None:

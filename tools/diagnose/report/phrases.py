@@ -272,18 +272,20 @@ def doubt(findings: Findings) -> str:
         more = sum((p.rms_extended**2 - p.rms_calibrated**2) / sd.get(k, 1.0) ** 2 for k, p in findings.played.items())
         text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
         return f"{text} {useless}" if worse and more > 0 else ""
-    if found.rmse_after >= found.rmse_before:
-        return f"On readings left out the extended rig predicts no better ({gain(found)}). {useless}"
+    own = [g for g in (found, *findings.gain_grouped) if g.channel == found.channel]
+    errors = [g.leading.without if g.leading else g.rmse_after for g in own]  # the rig holds the likeliest set alone
+    before, after = f"{found.channel}: {number(found.rmse_before)}", with_unit(errors[0], found.unit)
+    if errors[0] >= found.rmse_before:
+        return f"On readings left out the extended rig predicts no better ({before} before, {after} after). {useless}"
     worse = [
-        f"{SCHEMES.get(g.scheme, g.scheme)} {number(g.rmse_before)} before, {with_unit(g.rmse_after, g.unit)} after"
-        for g in findings.gain_grouped
-        if g.channel == found.channel and g.rmse_after > (1 + NOTICEABLE) * g.rmse_before
+        f"{SCHEMES.get(g.scheme, g.scheme)} {number(g.rmse_before)} before, {with_unit(error, g.unit)} after"
+        for g, error in zip(own[1:], errors[1:], strict=True)
+        if error > (1 + NOTICEABLE) * g.rmse_before
     ]
     if worse:
         text = f"Farther from what was measured the extended rig predicts {found.channel} no better"
         return f"{text} ({'; '.join(worse)}): there do not use the extended rig."
-    best = min(found.rivals, key=lambda name: found.rivals[name], default="")
-    if best and found.rivals[best] < found.rmse_after:
-        rival, after = number(found.rivals[best]), with_unit(found.rmse_after, found.unit)
-        return f"On readings left out plain statistics ({best}) predict better: {rival} against {after}."
+    rival, best = min(((error, name) for name, error in found.rivals.items()), default=(math.inf, ""))
+    if rival < errors[0]:
+        return f"On readings left out plain statistics ({best}) predict better: {number(rival)} against {after}."
     return ""
