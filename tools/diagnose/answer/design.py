@@ -187,17 +187,15 @@ def _run(
 def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.ndarray:
     """Reading less truth (n, k) per half width of each candidate, where a sensor is checked after the campaign."""
     n = len(check.true)
-    alike = channels.unit(o.campaign.sensor(check.sensor))  # all thermometers are in one bath
-    means = {s.name: np.mean(o.sensors[s.name]) for s in o.campaign.sensors if channels.unit(s) != alike}
-    sensors = {s.name: np.full(n, means.get(s.name, check.true)) for s in o.campaign.sensors}
-    reads = {s.name: sensors[s.name] for s in o.read}
+    units = {s.name: channels.unit(s) for s in o.campaign.sensors}  # all thermometers are in one bath
+    sensors = {s: np.full(n, check.true if units[s] == units[check.sensor] else v.mean()) for s, v in o.sensors.items()}
     features = np.tile(o.features.mean(axis=1)[:, None], n)
     features[0] = 1.0  # behind the campaign
     found = np.zeros((n, len(candidates)))
     for k, c in enumerate(candidates):
         t = np.r_[0.0, c.t[1:]]
         if check.sensor in c.formula.read:
-            _, by_t, _ = c.formula.instruments(t, sensors, reads, features)
+            _, by_t, _ = c.formula.instruments(t, sensors, sensors, features)
             found[:, k] = by_t[c.formula.read.index(check.sensor), :, 0]
         if check.sensor in c.formula.given:
             base = {path: np.full(n, float(o.p[0, o.plant.place[path]])) for path in c.formula.bases}

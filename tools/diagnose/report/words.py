@@ -291,8 +291,8 @@ def _cannot_be(findings: Findings) -> str:
     out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named | blind]
     if out:
         said.append(f"Found in 80 of 100 such campaigns at their usual size, and not here: {names_of(out, most=MOST)}.")
-    judged = filter(None, (findings.cause(i.cause) for i in findings.isolability))  # not of scatters
-    faint = [c.id for c in judged if c.id not in blind and not _seen(c)]
+    judged = {i.cause for i in findings.isolability} - blind  # no scatter is
+    faint = [c.id for c in findings.causes if c.id in judged and not _seen(c)]
     if faint and not named:
         said.append(f"At their usual size not found in 80 of 100: {names_of(faint, 'or', FEW)}.")
     still_open = {c.id for c in findings.causes if c.probability >= RULED_OUT} - named
