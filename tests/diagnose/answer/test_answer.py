@@ -560,6 +560,14 @@ def test_what_is_like_a_cause_is_like_it_on_the_side_that_was_found(
     assert [s.causes for s in told] == ([(TRUE, "losses.churning")] if alike else [])
 
 
+def test_a_design_tells_two_causes_apart_only_if_it_does_on_both_sides(clean: tuple[Setting, Found]) -> None:
+    offset, added = (next(c for c in clean[1].first.candidates if c.id == id) for id in (TRUE, "losses.churning"))
+    seen = Effects((offset, added), np.array([[9.0, -9.0]]))
+    assert seen.distances(TRUE, 1.0) == {"losses.churning": 9.0}
+    assert seen.distances(TRUE)["losses.churning"] == pytest.approx(0.0), "the probe may show too little"
+    assert seen.distances("losses.churning")[TRUE] == pytest.approx(0.0)
+
+
 def test_calibration_goes_no_further_than_what_is_possible(clean: tuple[Setting, Found]) -> None:
     data = clean[1].problem.data
     names = [n.name for n in data.nuisances]

@@ -49,17 +49,18 @@ class Effects:
         k = self.places[cause][0]
         return float(np.sqrt(self._gram[k, k]))
 
-    def distances(self, cause: str, size: float = 1.0) -> dict[str, float]:
+    def distances(self, cause: str, *sizes: float) -> dict[str, float]:
         """Standard deviations between a cause and the best form of each other, rescaled as its bounds allow.
 
         Args:
             cause: in the middle of its general form
-            size: in half widths of its prior
+            sizes: in half widths of its prior, the nearest of which counts; else one to each side that it has
         """
         k, (low, high, _) = self.places[cause][0], priors(self.candidates)
+        size = np.array(sizes or [s for s, end in ((-1, low[k]), (1, high[k])) if s * end > 0], dtype=float)[:, None]
         across, length = size * self._gram[k], np.diag(self._gram)
         best = np.clip(across / np.maximum(length, 1e-300), low, high)
-        left = size**2 * self._gram[k, k] - 2 * best * across + best**2 * length
+        left = (size**2 * self._gram[k, k] - 2 * best * across + best**2 * length).min(axis=0)
         found = {o: float(left[own].min()) for o, own in self.places.items() if o != cause}
         return {o: float(np.sqrt(max(value, 0.0))) for o, value in found.items()}
 
