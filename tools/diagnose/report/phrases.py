@@ -212,7 +212,7 @@ def residual(found: ResidualMean) -> str:
     where = ", ".join(f"{quantity} {group}" for quantity, group in zip(found.by, found.cell, strict=True))
     side = "above" if found.mean > 0 else "below"
     value, error = with_unit(abs(found.mean), found.unit, 2), number(found.sd, 2)
-    return f"{found.channel} lies {value} {side} it at {where} ({found.n} readings, standard error {error})"
+    return f"{found.channel} lies {value} {side} it at {where} (n = {found.n}, standard error {error})"
 
 
 def list_residuals(found: Iterable[ResidualMean], most: int) -> str:
