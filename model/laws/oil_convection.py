@@ -61,6 +61,21 @@ def forced_wall_in_oil(v: Num, nu: Num, Pr: Num, k: Num, L: Num) -> Num:
     return nusselt_laminar_plate(smooth_abs(v, V_WIDTH) * L / nu, Pr) * k / L
 
 
+def speed_along_wall(v: Num, L: Num) -> Num:
+    r"""Speed of thrown oil along a wall [m/s]: that which the gear gives it, at most that of a fall along the wall.
+
+    .. math:: v_w = \frac{v}{[1 + v^4 / (2 g L)^2]^{1/4}}
+
+    What has hit a wall is no longer driven by the gear but by its weight. The exponent only rounds the bend, where the
+    speed is 16 % below both.
+
+    Args:
+        v: speed that the gear gives the oil, either direction [m/s]
+        L: height of the wall [m]
+    """
+    return v / (1 + v**4 / (2 * GRAVITY * L) ** 2) ** 0.25
+
+
 def forced_disc_in_oil(w: Num, nu: Num, Pr: Num, k: Num, r: Num) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a disc that turns in oil.
 

@@ -11,7 +11,7 @@ from typing import ClassVar
 from ..core.component import Equation, equation
 from ..core.declare import Output, Parameter
 from ..laws.convection import mixed
-from ..laws.oil_convection import forced_disc_in_oil, forced_wall_in_oil, natural_wall_in_oil
+from ..laws.oil_convection import forced_disc_in_oil, forced_wall_in_oil, natural_wall_in_oil, speed_along_wall
 from ..laws.smooth import Num
 from .ports import Flange, Lubricant
 from .thermal import Conductor
@@ -60,12 +60,12 @@ class OilSideConductor(Conductor):
 class SplashConductor(OilSideConductor):
     """Oil that a gear throws along the walls of its housing: the coefficient follows speed and viscosity.
 
-    The oil flows along a plate at a share of the pitch line speed; at rest free convection is left. ISO/TR 14179-2 has
-    200 W/(m2.K) in its place. Connect `a` with the oil, `b` with the wall, `shaft` with that of the gear that throws
-    most.
+    The oil flows along a plate at a share of the pitch line speed, at most as fast as it would fall along the walls; at
+    rest free convection is left. ISO/TR 14179-2 has 200 W/(m2.K) in its place. Connect `a` with the oil, `b` with the
+    wall, `shaft` with that of the gear that throws most.
     """
 
-    share = Parameter("1", "speed of the oil along the walls over that of the pitch line", at_least=0.0, at_most=1.0)
+    share = Parameter("1", "speed of thrown oil over that of the pitch line", at_least=0.0, at_most=1.0)
     L = Parameter("m", "height of the walls, along which the oil flows", nominal=0.3, above=0.0)
 
     def height(self) -> Num:
@@ -74,7 +74,7 @@ class SplashConductor(OilSideConductor):
 
     def forced(self, Pr: Num) -> Num:
         """A plate in parallel flow."""
-        oil, v = self.lubricant, self.share * self.shaft.w * self.r
+        oil, v = self.lubricant, speed_along_wall(self.share * self.shaft.w * self.r, self.L)
         return forced_wall_in_oil(v, oil.nu, Pr, oil.k, self.L)
 
 

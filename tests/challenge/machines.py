@@ -142,7 +142,8 @@ class Machine:
 
     def tell(self, path: Path) -> None:
         """What the rig file says of how uncertain it is: nothing, so that the diagnosis takes what is usual."""
-        path.write_text(path.read_text("utf-8").partition("\n[uncertainties.")[0], "utf-8")
+        lines = path.read_text("utf-8").partition("\n[uncertainties.")[0].splitlines(keepends=True)
+        path.write_text("".join(line for line in lines if not line.startswith("uncertainties = ")), "utf-8")
 
     def deviate(self, scenario: Scenario, names: Sequence[str]) -> list[dict[str, float]]:
         """Why the true machine differs, of all names of its values."""

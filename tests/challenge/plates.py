@@ -25,8 +25,8 @@ class Plated(Machine):
 
     def deviate(self, scenario: Scenario, names: Sequence[str]) -> list[dict[str, float]]:
         """As the rig file says."""
-        value = Roles.of(scenario.spec).value
+        value, known = Roles.of(scenario.spec).value, scenario.standard_uncertainties
         return [
-            {path: change / value(path) for path, change in changes.items() if path in names}
+            {path: known[path] / value(path) for path in changes if path in names}
             for changes in scenario.joint_uncertainties.values()
         ]

@@ -16,7 +16,7 @@ from gearheat.model.parts import TwoGearSupport
 from gearheat.model.units import si_of
 from gearheat.scenarios.entries import catalogue
 from gearheat.scenarios.load import load
-from gearheat.scenarios.nuisances import usual_priors
+from gearheat.scenarios.nuisances import nuisances, usual_priors
 from gearheat.tools.build import rig_file, sizing
 from gearheat.tools.build.bearings import LIFE, TAPERED, choose
 from gearheat.tools.build.new import new
@@ -89,6 +89,15 @@ def test_it_says_how_uncertain_its_rules_are_and_a_card_leaves_it_there(made, na
     assert scenario.rough.issuperset(lossy) and scenario.rough.issuperset(roles.scaled(*roles.oil_side))
     kinds = {f"{scenario.spec.part(part).type}.{key}" for part, _, key in (p.rpartition(".") for p in scenario.rough)}
     assert kinds.isdisjoint(usual_priors(scenario)) and scenario.rough.isdisjoint(usual_priors(scenario))
+
+
+def test_splash_on_walls_is_uncertain_by_its_law_even_where_rules_hold(made):
+    """A bearing is near what its rule says, or far; the coefficient of splash was compared with no gearbox at all."""
+    scenario = load(made("two")[0])
+    known = {n.name: n for n in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties, scenario.rules)}
+    walls = known["oil to other bodies"]
+    assert (walls.sd, walls.near * walls.sd) == pytest.approx((0.6, 0.45), rel=0.01)
+    assert known["oil to what turns"].near * known["oil to what turns"].sd == pytest.approx(0.2)
 
 
 def test_what_it_made_is_told(gearheat, tmp_path):

@@ -50,7 +50,7 @@ ROUND = math.pi / 4
 SHIFTS = (1.0, 0.98, 1.02, 0.96, 1.04)
 #: Share of the walls that bath and splash reach [1].
 REACHED = 0.55
-#: Speed of the oil along the walls over that of the pitch line [1].
+#: Speed of thrown oil over that of the pitch line [1]; it runs along the walls at most as fast as it falls.
 ALONG = 0.5
 
 
