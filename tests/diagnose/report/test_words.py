@@ -187,7 +187,7 @@ def test_what_the_calibrated_rig_leaves_comes_first() -> None:
     found = explained(residuals=tuple(means))
     said = text(found, everything=True)
     assert said.startswith("stands out Against the calibrated rig, before any cause: T_oil lies 2.1 K above it at")
-    assert "mounting B, speed 200 rpm (6 readings" in found.says.stands_out
+    assert "mounting B, speed 200 rpm (n = 6, " in found.says.stands_out
     rows = [line.split() for line in said.splitlines() if "2.1 !" in line]
     assert rows == [["B", "+0.1", "(6)", "+2.1", "!", "(6)"]]
     assert render(found).index("2.1 !") < render(found).index("One cause explains")
