@@ -20,6 +20,8 @@ from .table import Sensor
 
 _TABLES = tables("scenarios.measured", "sensors.toml")
 ENDS: Mapping[str, Sequence[str]] = _TABLES["ends"]
+#: Words of what sits in a housing and is none: "Lagergehäuse", "bearing housing".
+SEATS: Sequence[str] = _TABLES["seats"]["words"]
 OTHER: Mapping[str, Sequence[str]] = _TABLES["other"]
 #: Units of columns without one, by the SI unit of what they hold.
 USUAL: Mapping[str, str] = {"K": "degC", "rad/s": "rpm", "N.m": "N.m", "W": "W", "A": "A", "1": "1"}
@@ -143,7 +145,8 @@ def _mark(column: str, sensor: Sensor, scenario: Scenario, wanted: Mapping[str, 
     low, part = stem.casefold(), sensor.reads.partition(".")[0]
     kind = _speaks(low, sensor.kind)
     if sensor.kind == "wall_temp":  # of all bodies only the housing is called so
-        kind = kind and _speaks(f"{sensor.name} {part}".casefold(), sensor.kind)
+        own = f"{sensor.name} {part}".casefold()
+        kind = kind and _speaks(own, sensor.kind) and not any(word in low and word not in own for word in SEATS)
     mark = KIND * kind + PART * (part in low)
     if part in scenario.spec.of_type(ShaftEnd.__name__):
         words_alone = set(re.findall(r"[^\W\d_]+|\d+", re.sub(r"\sin\s\S+$", "", low)))  # "torque in Nm"

@@ -31,6 +31,8 @@ from .times import find_days, find_times, join_days, seconds, time_column
 
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
+#: By which clocks are put back in autumn [s].
+HOUR = 3600.0
 #: Least step of a log [s].
 SHORTEST = 1e-3
 #: Largest step of a log [s].
@@ -331,6 +333,15 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
     return found
 
 
+def _gone_back(by: float, step: float) -> str:
+    """What is said of a time that does not go on: by how much it moves, and the usual step [s]."""
+    if by == 0:
+        return "it has the time of the line above. Keep one of the two."
+    if step < HOUR and abs(by - step + HOUR) < 0.5 * step:
+        return "time goes back an hour, as clocks do in autumn. Write times in UTC, or with a zone, 02:00+01:00."
+    return "time does not go on. Sort the samples by time."
+
+
 def _stretches(
     time: np.ndarray, segments: Sequence[Any] | None, name: str, lines: np.ndarray
 ) -> tuple[np.ndarray, float]:
@@ -344,9 +355,9 @@ def _stretches(
     )
     other = np.diff(np.unique(named, return_inverse=True)[1]) != 0
     steps = np.diff(time)
-    said = ("time does not go on. Sort the samples by time.", "it has the time of the line above. Keep one of the two.")
     back = np.flatnonzero((steps <= 0) & ~other)
-    raise_all(fold(name, ((lines[k + 1], said[int(steps[k] == 0)]) for k in back)), name)
+    step = float(np.median(np.abs(steps[steps != 0]))) if (steps != 0).any() else 0.0
+    raise_all(fold(name, ((lines[k + 1], _gone_back(steps[k], step)) for k in back)), name)
     step = float(np.median(steps[(steps > 0) & ~other]))
     if not SHORTEST <= step <= LONGEST:
         raise DataError([f"{name}: there are {step:g} s from sample to sample. Check the unit of its time."])

@@ -259,3 +259,10 @@ def test_a_german_table_becomes_a_diagnosis_by_clicks_and_the_other_sheets_open(
         browser.wait(f"{SAID}.includes(\"gearheat steady planetary --set 'carrier.tau=250 N.m'\")")
         browser.js("document.querySelector('#map').contentDocument.getElementById('fields').scrollIntoView()")
         browser.show("desk_map.png")
+
+
+def test_a_bearing_housing_is_not_the_housing(tmp_path: Path) -> None:
+    table = tmp_path / "t.csv"
+    head = "n1 [1/min];M2 [Nm];Sumpf [°C];Lagergehäuse Antrieb [°C];Gehäusewand [°C];Halle [°C]"
+    table.write_text(head + "\n" + "1450;590;45,1;49,2;41,0;20,1\n" * 7, encoding="utf-8")
+    assert gh.card("helical_two_stage", table).columns["T_wall"] == "Gehäusewand [°C]"

@@ -109,6 +109,7 @@ def test_own_names_and_units_by_the_card(tmp_path: Path) -> None:
         (lambda head, rows: (head.replace("n_hss_rpm", "n"), rows), "drives the model"),
         (lambda head, rows: (head.replace("time_utc", "when"), rows), "no column of time"),
         (lambda head, rows: (head, rows[:5] + rows[3:]), "line 7: time does not go on"),
+        (lambda head, rows: (head, rows[:12] + rows[6:]), "line 14: time goes back an hour, as clocks do in autumn"),
         (lambda head, rows: (head, [rows[0].replace("1500", "fast"), *rows[1:]]), 'line 2: n_hss_rpm is "fast"'),
         (lambda head, rows: (head, []), "holds no samples"),
     ],
