@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import re
 import reprlib
 import tempfile
@@ -58,6 +59,23 @@ def path_of(table: Table, *, duty: bool = False, name: str = "table") -> Path:
 def path_or_none(table: Table | None) -> Path | None:
     """The file of a table, where there is one."""
     return None if table is None else path_of(table)
+
+
+def card_file(card: Any) -> Path | None:
+    """The file of a card; of one that `gearheat.card` made, or of a dict, one that is written.
+
+    Args:
+        card: file, card, dict or None
+    """
+    if card is None or isinstance(card, str | Path):
+        return None if card is None else Path(card)
+    keys = card if isinstance(card, dict) else card.as_dict() if hasattr(card, "as_toml") else None
+    if keys is None:
+        raise DataError(f"card: {reprlib.repr(card)} is no card. Give a TOML or JSON file, a dict, or a gearheat.card.")
+    path = Path(_folder().name) / str(next(_COUNT)) / "card.json"
+    path.parent.mkdir()
+    path.write_text(json.dumps(keys), encoding="utf-8")
+    return path
 
 
 def paths_of(tables: Tables) -> tuple[Path, ...]:

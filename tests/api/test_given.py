@@ -9,8 +9,10 @@ from pathlib import Path
 import gearheat as gh
 import numpy as np
 import pytest
+from gearheat.model.errors import DataError
 from gearheat.model.run import simulate as transient
-from gearheat.scenarios.frames import path_of
+from gearheat.scenarios.frames import card_file, path_of
+from gearheat.scenarios.measured.card import read_card
 from gearheat.tools.export.fmu import choices_of
 
 HEAD = "time [h],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n"
@@ -208,3 +210,13 @@ def test_a_sweep_over_entries_of_a_catalogue(rig: gh.Rig) -> None:
     assert rows.rows[:, 0] == pytest.approx(wanted)
     with pytest.raises(gh.GearheatError, match='unknown oil "steel"'):
         gh.sweep(rig, {"oil": ["MINR", "steel"]}, output="oil.T")
+
+
+def test_a_card_of_python_stands_for_a_file() -> None:
+    keys = {"columns": {"T_oil": "Sumpf"}}
+    made = card_file(keys)
+    assert made is not None and read_card(made).columns == keys["columns"]
+    written = card_file(gh.card("helical_two_stage"))
+    assert written is not None and read_card(written) == read_card(card_file(gh.card("helical_two_stage")))
+    with pytest.raises(DataError, match="is no card"):
+        card_file(3)

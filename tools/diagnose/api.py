@@ -14,7 +14,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from ...model.errors import Problems
-from ...scenarios.frames import Table as File, Tables as Files, path_or_none, paths_of, rows_told
+from ...scenarios.frames import Table as File, Tables as Files, card_file, path_or_none, paths_of, rows_told
 from ...scenarios.given import RigLike, listed
 from ..show.console import as_json, file_of, plottable, progress_bar, write
 from ..show.display import Display
@@ -192,7 +192,7 @@ def diagnose(
         rig,
         path_or_none(data),
         paths_of(logs),
-        path_or_none(card),
+        card_file(card),
         path_or_none(reference),
         paths_of(reference_logs),
         paths_of(sibling_logs),
@@ -250,7 +250,7 @@ def plan(
         >>> gh.plan("planetary", separate=["losses.churning", "losses.seal_drag"])  # doctest: +SKIP
     """
     request = PlanRequest(
-        rig, tuple(listed(separate)), path_or_none(card), path_or_none(points), paths_of(library), reference
+        rig, tuple(listed(separate)), card_file(card), path_or_none(points), paths_of(library), reference
     )
     problems, picture = Problems(), path_or_none(out)
     problems.of(lambda: plottable(picture, "--out"))
