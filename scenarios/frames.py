@@ -100,6 +100,8 @@ def rows_told() -> Iterator[None]:
 
 def _told(problem: str) -> str:
     rows = re.sub(rf"{_NAME} line (\d+)", lambda m: f"row {int(m[1]) - 2} of the DataFrame", problem)
+    many = rf"{_NAME} lines (\d+) to (\d+)"
+    rows = re.sub(many, lambda m: f"rows {int(m[1]) - 2} to {int(m[2]) - 2} of the DataFrame", rows)
     return rows.replace("row -1 of the DataFrame", "the DataFrame").replace(_NAME, "the DataFrame")
 
 

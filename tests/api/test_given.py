@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.model.run import simulate as transient
-from gearheat.scenarios.frames import card_file, path_of
+from gearheat.scenarios.frames import card_file, path_of, rows_told
 from gearheat.scenarios.measured.card import read_card
 from gearheat.tools.export.fmu import choices_of
 
@@ -220,3 +220,8 @@ def test_a_card_of_python_stands_for_a_file() -> None:
     assert written is not None and read_card(written) == read_card(card_file(gh.card("helical_two_stage")))
     with pytest.raises(DataError, match="is no card"):
         card_file(3)
+
+
+def test_many_rows_of_a_frame_are_told_by_its_own_count() -> None:
+    with pytest.raises(DataError, match=r"^rows 3 to 23 of the DataFrame, 21 of them"), rows_told():
+        raise DataError("DataFrame.csv lines 5 to 25, 21 of them: no number.")
