@@ -66,6 +66,9 @@ def card_file(card: Any) -> Path | None:
 
     Args:
         card: file, card, dict or None
+
+    Raises:
+        DataError: it is none of them
     """
     if card is None or isinstance(card, str | Path):
         return None if card is None else Path(card)

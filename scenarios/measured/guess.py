@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
 
 from ...model.errors import DataError, Problems, suggestion
 from ...model.files import tables
 from ...model.parts.shaft import ShaftEnd
 from ..csv_cells import numbers
-from ..csv_table import bare_name, is_of, read_cells, split_unit
+from ..csv_table import bare_name, is_of, read_cells, scale, split_unit
 from ..scenario import Scenario
 from .card import Card, CardSensor
 from .nominal import Nominal
@@ -33,6 +35,8 @@ PART = 8
 KIND = 4
 #: Mark of a column that has a word of a sensor's end.
 END = 2
+#: A torque that is so many times that of the operating point, or so small a part, rather is one of another shaft.
+FAR = 5.0
 #: Letters of a word that must stand alone.
 SHORT = 3
 #: Share of the largest reading that noise at rest stays within.
@@ -77,10 +81,20 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
     known = {name: column for name, column in columns.items() if column}
     known |= _context({name: column for name, column in cells.items() if name not in known.values()}, columns)
     wanted = wanted_sensors(scenario)
-    _match(known, wanted, header, scenario)
+    nominal = Nominal(scenario)
+
+    def is_far(column: str, sensor: Sensor) -> bool:
+        """Whether a torque is far from the operating point's, which tells one end from the other."""
+        read = numbers([cell for cell in cells[column] if cell])
+        if sensor.kind != "torque" or read is None or not read.any():
+            return False
+        factor = scale(said.units.get(column) or split_unit(column)[1] or USUAL["N.m"], "N.m", name=column)[0]
+        return bool(abs(np.log(factor * np.abs(read).max() / abs(nominal.value(sensor.reads)))) > np.log(FAR))
+
+    _match(known, wanted, header, scenario, is_far)
     if any(s.kind == "torque" and s.role == "given" and name not in known for name, s in wanted.items()):
         powers = [h for h in header if is_of(said.units.get(h, split_unit(h)[1]), "W")]
-        _match(known, _by_power(wanted, scenario), powers, scenario)
+        _match(known, _by_power(wanted, scenario), powers, scenario, is_far)
     known = {name: column for name, column in known.items() if columns.get(name) != ""}
     units = _units(known, wanted) | dict(said.units)
     card = Card(columns=known, units=units, sensors=_driving(known, wanted), name=path.name)
@@ -114,16 +128,22 @@ def _context(cells: Mapping[str, Sequence[str]], columns: Mapping[str, str]) -> 
     return found
 
 
-def _match(known: dict[str, str], wanted: Mapping[str, Sensor], header: Sequence[str], scenario: Scenario) -> None:
+def _match(
+    known: dict[str, str],
+    wanted: Mapping[str, Sensor],
+    header: Sequence[str],
+    scenario: Scenario,
+    is_far: Callable[[str, Sensor], bool],
+) -> None:
     """Adds to what is known the columns that fit the wanted sensors, the best ones first."""
     marks = [
-        (mark, -place, name, column)
+        ((mark, not is_far(column, sensor), -place), name, column)
         for place, (name, sensor) in enumerate(wanted.items())
         for column in header
         if name not in known and column not in known.values()
         if (mark := _mark(column, sensor, scenario, wanted)) > 0
     ]
-    for _, _, name, column in sorted(marks, key=lambda mark: mark[:2], reverse=True):
+    for _, name, column in sorted(marks, key=lambda mark: mark[0], reverse=True):
         if name not in known and column not in known.values():
             known[name] = column
 

@@ -59,9 +59,11 @@ def healthy(rig) -> Path:
     return log(rig, "healthy", 1, BEGIN - timedelta(days=7))
 
 
-@pytest.mark.parametrize("seed", [11, 12])
-def test_sound_ones_raise_no_alarm(rig, healthy, seed: int) -> None:
-    found = gh.diagnose(None, rig, logs=log(rig, f"sound{seed}", seed, BEGIN), reference_logs=healthy, quick=True)
+@pytest.mark.parametrize("seed", [2, 3])
+def test_sound_ones_raise_no_alarm(rig, seed: int) -> None:
+    """Each beside a healthy log of its own: what is by chance in a healthy log is in all answers beside it."""
+    own = log(rig, f"healthy{seed}", seed, BEGIN - timedelta(days=7))
+    found = gh.diagnose(None, rig, logs=log(rig, f"sound{seed}", seed + 20, BEGIN), reference_logs=own, quick=True)
     assert found.verdict == "consistent" and found.test.p_any > 0.05
 
 

@@ -125,6 +125,17 @@ def test_a_unit_behind_in_is_no_end_of_a_shaft(tmp_path: Path) -> None:
     assert found.columns["n_input"] == "Speed in rpm" and found.columns["T_output"] == "Torque in Nm"
 
 
+@pytest.mark.parametrize("end", ["input", "output"])
+def test_a_torque_of_no_shaft_is_of_the_one_whose_torques_are_that_large(tmp_path: Path, end: str) -> None:
+    rig = tmp_path / "belt.toml"
+    gh.new("belt", stages="helical,helical", ratio=20, power="30 kW", speed="1480 rpm", out=rig)
+    usual = abs(gh.steady(rig)[f"{end}.tau"])
+    rows = [f"1480;{share * usual:.1f};{40 + 20 * share:.1f};20" for share in (0.3, 0.6, 0.9)]
+    (path := tmp_path / "feld.csv").write_text("\n".join(["speed;torque;T_oil;T_room", *rows]), encoding="utf-8")
+    card = gh.card(rig, path)
+    assert {card.reads[name] for name, column in card.columns.items() if column == "torque"} == {f"{end}.tau"}
+
+
 def test_cells_below_zero_are_no_magnitudes(tmp_path: Path) -> None:
     rows = [f"{100 + 10 * k};-{300 + 20 * k};{50 + 2 * k};20" for k in range(7)]
     (path := tmp_path / "feld.csv").write_text(
