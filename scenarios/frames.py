@@ -32,6 +32,13 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory()
 
 
+def _new_file(name: str) -> Path:
+    """A path of that name in a folder of its own."""
+    path = Path(_folder().name) / str(next(_COUNT)) / name
+    path.parent.mkdir()
+    return path
+
+
 def path_of(table: Table, *, duty: bool = False, name: str = "table") -> Path:
     """The file of a table; of a DataFrame one that is written, with an index that has a name or holds times.
 
@@ -47,8 +54,7 @@ def path_of(table: Table, *, duty: bool = False, name: str = "table") -> Path:
         return Path(table)
     if not hasattr(table, "to_csv") or not hasattr(table, "columns"):
         raise DataError(f"{name}: {reprlib.repr(table)} is no table. Give a CSV file, or a DataFrame of pandas.")
-    path = Path(_folder().name) / str(next(_COUNT)) / _NAME
-    path.parent.mkdir()
+    path = _new_file(_NAME)
     frame = _timed(table, duty)
     if duty and frame.index.name is None and not find_times(map(str, frame.columns[:1])):
         raise DataError("the DataFrame has no time. Name its index 'time [s]', or put such a column first.")
@@ -75,8 +81,7 @@ def card_file(card: Any) -> Path | None:
     keys = card if isinstance(card, dict) else card.as_dict() if hasattr(card, "as_toml") else None
     if keys is None:
         raise DataError(f"card: {reprlib.repr(card)} is no card. Give a TOML or JSON file, a dict, or a gearheat.card.")
-    path = Path(_folder().name) / str(next(_COUNT)) / "card.json"
-    path.parent.mkdir()
+    path = _new_file("card.json")
     path.write_text(json.dumps(keys), encoding="utf-8")
     return path
 

@@ -85,8 +85,10 @@ def guess_card(path: Path, scenario: Scenario, said: Known) -> Card:
 
     def is_far(column: str, sensor: Sensor) -> bool:
         """Whether a torque is far from the operating point's, which tells one end from the other."""
+        if sensor.kind != "torque":
+            return False
         read = numbers([cell for cell in cells[column] if cell])
-        if sensor.kind != "torque" or read is None or not read.any():
+        if read is None or not read.any():
             return False
         factor = scale(said.units.get(column) or split_unit(column)[1] or USUAL["N.m"], "N.m", name=column)[0]
         return bool(abs(np.log(factor * np.abs(read).max() / abs(nominal.value(sensor.reads)))) > np.log(FAR))
